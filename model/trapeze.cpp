@@ -1,0 +1,178 @@
+#include "model/trapeze.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycell {
+namespace {
+
+/// Below this height in y (cells) a polygon is cut along another axis.
+constexpr double least_sweep_height = 1.0 / 64;
+/// Slabs thinner than this hold nothing that a ray could meet between the edges' hair.
+constexpr double least_slab = 1e-10;
+
+int sweep_axis(const std::vector<dvec3>& outline) {
+    dvec3 low = outline.front();
+    dvec3 high = outline.front();
+    for (const dvec3& p : outline) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const dvec3 extent = high - low;
+    if (extent.y >= least_sweep_height) return 1;
+    if (extent.z >= extent.y && extent.z >= extent.x) return 2;
+    return extent.y >= extent.x ? 1 : 0;
+}
+
+struct Side {
+    dvec3 a;
+    dvec3 b;
+};
+
+dvec3 point_at(const Side& side, int axis, double s) {
+    // From the same end for both neighbours of a side, so that they get the same point.
+    const bool forward = side.a[axis] < side.b[axis];
+    const dvec3& from = forward ? side.a : side.b;
+    const dvec3& to = forward ? side.b : side.a;
+    if (s == from[axis]) return from;
+    if (s == to[axis]) return to;
+    dvec3 p = from + (to - from) * ((s - from[axis]) / (to[axis] - from[axis]));
+    p[axis] = s;
+    return p;
+}
+
+class Cutter {
+  public:
+    explicit Cutter(const Polygon& polygon) : polygon_(polygon), axis_(sweep_axis(polygon.vertices)) {
+        dvec3 unit{0, 0, 0};
+        unit[axis_] = 1;
+        along_ = glm::cross(polygon.plane.n, unit);
+    }
+
+    std::vector<Trapeze> run() {
+        std::vector<double> levels;
+        for (const dvec3& v : polygon_.vertices) levels.push_back(v[axis_]);
+        std::sort(levels.begin(), levels.end());
+        double s0 = levels.front();
+        for (const double s1 : levels) {
+            if (s1 - s0 < least_slab) continue;
+            slab(s0, s1);
+            s0 = s1;
+        }
+        for (const Open& open : open_) close(open);
+        return std::move(trapezes_);
+    }
+
+  private:
+    struct Open {  // a trapeze whose two sides run on into the next slab
+        Side left;
+        Side right;
+        double s0;
+        double s1;
+    };
+
+    void slab(double s0, double s1) {
+        const double middle = 0.5 * (s0 + s1);
+        struct Crossing {
+            double place;
+            Side side;
+        };
+        std::vector<Crossing> crossings;
+        const auto& v = polygon_.vertices;
+        for (std::size_t i = 0; i < v.size(); ++i) {
+            const Side side{v[i], v[(i + 1) % v.size()]};
+            if ((side.a[axis_] <= middle) == (side.b[axis_] <= middle)) continue;
+            crossings.push_back({glm::dot(along_, point_at(side, axis_, middle)), side});
+        }
+        std::stable_sort(crossings.begin(), crossings.end(),
+                         [](const Crossing& a, const Crossing& b) { return a.place < b.place; });
+        std::vector<Open> next;
+        for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+            if (!(crossings[i + 1].place > crossings[i].place)) continue;  // a bridge left by clipping
+            Open open{crossings[i].side, crossings[i + 1].side, s0, s1};
+            const auto before = std::find_if(open_.begin(), open_.end(), [&](const Open& o) {
+                return o.s1 == s0 && o.left.a == open.left.a && o.left.b == open.left.b &&
+                       o.right.a == open.right.a && o.right.b == open.right.b;
+            });
+            if (before != open_.end()) {
+                open.s0 = before->s0;
+                open_.erase(before);
+            }
+            next.push_back(open);
+        }
+        for (const Open& open : open_) close(open);
+        open_ = std::move(next);
+    }
+
+    void close(const Open& open) {
+        Trapeze t;
+        t.polygon = polygon_.id;
+        t.object = polygon_.object;
+        t.plane = polygon_.plane;
+        t.drop = polygon_.drop;
+        t.normal = polygon_.normal;
+        const dvec3 ring[] = {point_at(open.left, axis_, open.s0), point_at(open.right, axis_, open.s0),
+                              point_at(open.right, axis_, open.s1), point_at(open.left, axis_, open.s1)};
+        dvec3 centre{0, 0, 0};
+        for (const dvec3& p : ring) centre += 0.25 * p;
+        for (const dvec3& p : ring) {
+            if (t.corner_count == 0 || p != t.corners[std::size_t(t.corner_count - 1)]) {
+                t.corners[std::size_t(t.corner_count++)] = p;
+            }
+        }
+        if (t.corner_count > 1 && t.corners[0] == t.corners[std::size_t(t.corner_count - 1)]) --t.corner_count;
+        if (t.corner_count < 3) return;
+        const dvec2 inside = project(centre, t.drop);
+        side_edge(t, open.left, inside);
+        side_edge(t, open.right, inside);
+        cut_edge(t, open.s0, 1);
+        cut_edge(t, open.s1, -1);
+        t.top = t.bottom = ring[0].y;
+        for (const dvec3& p : ring) {
+            t.top = std::min(t.top, p.y);
+            t.bottom = std::max(t.bottom, p.y);
+        }
+        trapezes_.push_back(t);
+    }
+
+    static void side_edge(Trapeze& t, const Side& side, const dvec2& inside) {
+        const dvec2 a = project(side.a, t.drop);
+        const dvec2 along = project(side.b, t.drop) - a;
+        const double length = glm::length(along);
+        if (!(length > 0)) return;
+        EdgeFunction edge{-along.y / length, along.x / length, 0, 0};
+        edge.c = -(edge.a * a.x + edge.b * a.y);
+        if (edge.at(inside) < 0) edge = {-edge.a, -edge.b, -edge.c, 0};
+        t.edges[std::size_t(t.edge_count++)] = edge;
+    }
+
+    /// The side at sweep position s, inside where sign·(p[axis] − s) >= 0, as a function of (u, v).
+    void cut_edge(Trapeze& t, double s, double sign) const {
+        const Projection axes = projection(t.drop);
+        EdgeFunction edge;
+        if (axis_ == axes.u) {
+            edge = {sign, 0, -sign * s, 0};
+        } else if (axis_ == axes.v) {
+            edge = {0, sign, -sign * s, 0};
+        } else {  // the sweep's own axis is the dropped one: it is a function of (u, v) on the plane
+            const dvec3& n = t.plane.n;
+            const double slope = std::hypot(n[axes.u], n[axes.v]);
+            if (!(slope > 0)) return;
+            const double facing = sign * (n[t.drop] > 0 ? 1 : -1) / slope;
+            edge = {-facing * n[axes.u], -facing * n[axes.v], facing * (t.plane.c - n[t.drop] * s), 0};
+        }
+        t.edges[std::size_t(t.edge_count++)] = edge;
+    }
+
+    const Polygon& polygon_;
+    int axis_;
+    dvec3 along_;
+    std::vector<Open> open_;
+    std::vector<Trapeze> trapezes_;
+};
+
+}  // namespace
+
+std::vector<Trapeze> precompute(const Polygon& polygon) { return Cutter(polygon).run(); }
+
+}  // namespace raycell

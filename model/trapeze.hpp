@@ -1,0 +1,47 @@
+// Precomputation: polygons into trapezes (paper, section 2.2).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "model/polygon.hpp"
+
+namespace raycell {
+
+/// Inside where a·u + b·v + c >= 0 in the projection of the polygon's plane; (a, b) is unit, so the value is a
+/// distance in cells. `piece` tells which convex piece of a voxel the edge belongs to.
+struct EdgeFunction {
+    double a = 0;
+    double b = 0;
+    double c = 0;
+    std::uint32_t piece = 0;
+    double at(const dvec2& uv) const { return a * uv.x + b * uv.y + c; }
+};
+
+/// Distances below this are rounding, not geometry (cells). Points this far outside an edge count as inside, so
+/// that neighbours that share an edge leave no crack.
+constexpr double hair = 1e-7;
+
+/// A convex part of a polygon between two lines parallel to the rows. Polygons without height on the screen (seen
+/// edge-on along a row) are cut along z instead, those without height and depth along x.
+struct Trapeze {
+    std::uint32_t polygon = 0;
+    std::uint32_t object = 0;
+    Plane plane;
+    int drop = 2;
+    NormalField normal;
+    std::array<dvec3, 4> corners;  ///< in order round the trapeze; a triangle repeats none
+    int corner_count = 0;
+    std::array<EdgeFunction, 4> edges;
+    int edge_count = 0;
+    double top = 0;     ///< smallest y, cells
+    double bottom = 0;  ///< largest y, cells
+    int first_row() const { return int(top); }
+    /// True when a row below `row` still has a part of it.
+    bool reaches_below(int row) const { return bottom > row + 1; }
+};
+
+/// Cuts a polygon that lies inside the cube into trapezes.
+std::vector<Trapeze> precompute(const Polygon& polygon);
+
+}  // namespace raycell

@@ -1,0 +1,221 @@
+#include "model/voxel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycell {
+namespace {
+
+struct Rectangle {
+    dvec2 low;
+    dvec2 high;
+};
+
+/// The cell's column over the voxel's run, in the projection of the plane.
+Rectangle footprint(const Voxel& voxel, double level) {
+    const dvec3 low{0, 0, voxel.near_level * level};
+    const dvec3 high{1, 1, voxel.far_level * level};
+    return {project(low, voxel.drop), project(high, voxel.drop)};
+}
+
+double least_over(const EdgeFunction& edge, const Rectangle& r) {
+    return edge.c + std::min(edge.a * r.low.x, edge.a * r.high.x) +
+           std::min(edge.b * r.low.y, edge.b * r.high.y);
+}
+
+double most_over(const EdgeFunction& edge, const Rectangle& r) {
+    return edge.c + std::max(edge.a * r.low.x, edge.a * r.high.x) +
+           std::max(edge.b * r.low.y, edge.b * r.high.y);
+}
+
+/// Whether the span's polygon covers the pixel centre (rung `depth`); z is its depth there.
+bool covers_centre(const Span& span, double& z) {
+    const dvec3& n = span.plane.n;
+    if (std::abs(n.z) < 1e-12) return false;
+    z = (span.plane.c - 0.5 * (n.x + n.y)) / n.z;
+    const dvec2 uv = project({0.5, 0.5, z}, span.drop);
+    for (int i = 0; i < span.edge_count; ++i) {
+        if (span.edges[std::size_t(i)].at(uv) < -hair) return false;
+    }
+    return true;
+}
+
+/// Bounds of the span's part in the projection; with the edges they tell exactly what a convex part touches.
+Rectangle part_bounds(const Span& span) {
+    Rectangle bounds{dvec2(1e300), dvec2(-1e300)};
+    for (int i = 0; i < span.outline_count; ++i) {
+        const dvec2 uv = project(span.outline[std::size_t(i)], span.drop);
+        bounds.low = glm::min(bounds.low, uv);
+        bounds.high = glm::max(bounds.high, uv);
+    }
+    return bounds;
+}
+
+bool overlap(const Rectangle& a, const Rectangle& b) {
+    return a.low.x <= b.high.x + hair && b.low.x <= a.high.x + hair && a.low.y <= b.high.y + hair &&
+           b.low.y <= a.high.y + hair;
+}
+
+/// A sub-cell's bit is set where the polygon touches it at all: watertight first.
+std::uint64_t coverage(const EdgeFunction* edges, int count, const Rectangle& whole, const Rectangle& bounds) {
+    std::uint64_t mask = 0;
+    const dvec2 step = (whole.high - whole.low) / 8.0;
+    for (int row = 0; row < 8; ++row) {
+        for (int column = 0; column < 8; ++column) {
+            const dvec2 low = whole.low + step * dvec2(column, row);
+            const Rectangle part{low, low + step};
+            bool touched = overlap(part, bounds);
+            for (int i = 0; i < count && touched; ++i) touched = most_over(edges[i], part) >= -hair;
+            if (touched) mask |= std::uint64_t(1) << (8 * row + column);
+        }
+    }
+    return mask;
+}
+
+/// The span's part inside the cell that it is at; empty where the bounding row part only passes by.
+std::vector<dvec3> cell_part(const Span& span) {
+    std::vector<dvec3> part(span.outline.begin(), span.outline.begin() + span.outline_count);
+    bool left = false;
+    bool right = false;
+    for (const dvec3& p : part) {
+        left = left || p.x < 0;
+        right = right || p.x > 1;
+    }
+    if (left) part = clip_half_space(part, 0, 0, 1);
+    if (right && !part.empty()) part = clip_half_space(part, 0, 1, -1);
+    return part;
+}
+
+/// Mean of the corners, and area.
+void set_point(Voxel& voxel, const std::vector<dvec3>& part) {
+    dvec3 sum{0, 0, 0};
+    for (const dvec3& p : part) sum += p;
+    voxel.point = sum / double(part.size());
+    voxel.point.x = std::clamp(voxel.point.x, 0.0, 1.0);
+    voxel.point.y = std::clamp(voxel.point.y, 0.0, 1.0);
+    voxel.area = 0.5 * glm::length(newell(part));
+}
+
+/// Adds a piece of the same polygon to the voxel that it already has in this cell.
+void merge(Voxel& voxel, const Voxel& piece) {
+    voxel.near_level = std::min(voxel.near_level, piece.near_level);
+    voxel.far_level = std::max(voxel.far_level, piece.far_level);
+    voxel.mask |= piece.mask;
+    const double area = voxel.area + piece.area;
+    if (area > 0) voxel.point = (voxel.area * voxel.point + piece.area * piece.point) / area;
+    voxel.area = area;
+}
+
+}  // namespace
+
+bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level) {
+    Voxel voxel;
+    voxel.polygon = span.polygon;
+    voxel.object = span.object;
+    voxel.plane = span.plane;
+    voxel.drop = std::uint8_t(span.drop);
+    const std::vector<dvec3> part = cell_part(span);
+    if (part.empty()) return false;  // only touches the cell's side: the neighbour has it
+    double near = std::max(span.near, span.z_min);
+    double far = std::min(span.far, span.z_max);
+    // Where a side crosses the cell, the plane runs on past it: the run is that of the part inside.
+    double part_near = part.front().z;
+    double part_far = part.front().z;
+    for (const dvec3& p : part) {
+        part_near = std::min(part_near, p.z);
+        part_far = std::max(part_far, p.z);
+    }
+    near = std::max(near, part_near);
+    far = std::min(far, part_far);
+    if (settings.hit == HitTest::depth) {
+        double z = 0;
+        if (!covers_centre(span, z)) return false;
+        near = far = z;
+    } else if (near > far) {
+        if (near > far + hair) return false;  // the part does not reach this cell
+        std::swap(near, far);
+    }
+    const int last = settings.depth_levels - 1;
+    const double room = settings.hit == HitTest::depth ? 0 : hair;
+    voxel.near_level = std::clamp(int(std::floor((near - room) / level)), 0, last);
+    voxel.far_level = std::clamp(int(std::floor((far + room) / level)), 0, last) + 1;
+
+    std::array<EdgeFunction, 4> crossing;
+    int crossings = 0;
+    if (settings.hit != HitTest::depth) {
+        const Rectangle whole = footprint(voxel, level);
+        for (int i = 0; i < span.edge_count; ++i) {
+            const EdgeFunction& edge = span.edges[std::size_t(i)];
+            if (most_over(edge, whole) < -hair) return false;  // wholly outside: touches only the run's box
+            if (least_over(edge, whole) < -hair) crossing[std::size_t(crossings++)] = edge;
+        }
+        if (settings.hit == HitTest::mask) voxel.mask = coverage(crossing.data(), crossings, whole, part_bounds(span));
+    }
+    set_point(voxel, part);
+
+    const auto set_normal = [&](Voxel& v) {
+        v.normal = span.normal;
+        if (settings.normals == Normals::voxel) {
+            v.normal = {span.normal.at(project(v.point, span.drop)), {0, 0, 0}, {0, 0, 0}};
+        }
+    };
+    // The pieces of one polygon come one after the other. A mask over z is relative to its own run: kept apart.
+    const bool mergeable = settings.hit != HitTest::mask || span.drop == 2;
+    if (mergeable && !store.voxels.empty() && store.voxels.back().polygon == span.polygon) {
+        Voxel& before = store.voxels.back();
+        merge(before, voxel);
+        set_normal(before);
+        if (settings.hit == HitTest::edge && before.pieces > 0) {
+            if (crossings == 0) {
+                store.edges.resize(before.first_edge);
+                before.edge_count = before.pieces = 0;
+            } else {
+                for (int i = 0; i < crossings; ++i) {
+                    crossing[std::size_t(i)].piece = before.pieces;
+                    store.edges.push_back(crossing[std::size_t(i)]);
+                }
+                before.edge_count = std::uint16_t(before.edge_count + crossings);
+                ++before.pieces;
+            }
+        }
+        return true;
+    }
+    if (settings.voxel_capacity > 0 && store.voxels.size() >= std::size_t(settings.voxel_capacity)) {
+        ++store.overflowed;
+        return false;
+    }
+    set_normal(voxel);
+    if (settings.hit == HitTest::edge && crossings > 0) {
+        voxel.first_edge = std::uint32_t(store.edges.size());
+        voxel.edge_count = std::uint16_t(crossings);
+        voxel.pieces = 1;
+        store.edges.insert(store.edges.end(), crossing.begin(), crossing.begin() + crossings);
+    } else {
+        voxel.first_edge = std::uint32_t(store.edges.size());
+    }
+    store.voxels.push_back(voxel);
+    if (settings.display == Display::gouraud) store.intensities.push_back(span.intensity);
+    return true;
+}
+
+VoxelBits voxel_bits(const PictureSettings& settings, int word_bits, std::size_t sources) {
+    // Identity and features: polygon 20, colour 3x8, Kd, Ks, T 8 each, Shine 12, index of refraction 12.
+    constexpr int features = 20 + 24 + 24 + 24;
+    int level_bits = 0;
+    while ((1 << level_bits) < settings.depth_levels) ++level_bits;
+    VoxelBits bits;
+    bits.base = features + level_bits + 3 * word_bits;  // one depth, one normal: the paper's voxel
+    if (settings.hit != HitTest::depth) bits.base += level_bits;
+    // Two slopes, an offset and which axis they are for.
+    if (settings.hit >= HitTest::plane) bits.base += 3 * word_bits + 2;
+    if (settings.hit == HitTest::mask) bits.base += 64;
+    if (settings.hit == HitTest::edge) bits.base += 4;  // how many edges follow
+    if (settings.normals == Normals::linear) bits.base += 6 * word_bits;
+    if (settings.shadows != Shadows::per_hit) {
+        bits.base += int(sources) * (settings.shadows == Shadows::memo ? 2 : 1);
+    }
+    if (settings.hit == HitTest::edge) bits.per_edge = 3 * word_bits + 2;
+    return bits;
+}
+
+}  // namespace raycell

@@ -1,0 +1,51 @@
+// Voxels: what a cell makes from a span and keeps (design, section 4).
+#pragma once
+
+#include <vector>
+
+#include "model/settings.hpp"
+#include "model/span.hpp"
+
+namespace raycell {
+
+/// The run of depth levels that a polygon takes up in one cell, and what the rung above `interval` adds to it.
+/// Lengths in cell widths, x and y relative to the cell's corner, z absolute.
+struct Voxel {
+    std::uint32_t polygon = 0;
+    std::uint32_t object = 0;
+    std::int32_t near_level = 0;  ///< first depth level
+    std::int32_t far_level = 0;   ///< one past the last
+    Plane plane;
+    NormalField normal;
+    std::uint8_t drop = 2;
+    std::uint8_t pieces = 0;       ///< convex pieces told apart by edges; 0: the polygon covers the whole cell
+    std::uint16_t edge_count = 0;
+    std::uint32_t first_edge = 0;  ///< index into CellStore::edges
+    std::uint64_t mask = 0;        ///< bit 8·row + column, over (u, v) of the plane's projection
+    dvec3 point{0, 0, 0};          ///< the voxel's own point: precast and memo shadows, `voxel` normals
+    double area = 0;               ///< of the polygon in the cell, while loading: weight of `point` in a merge
+};
+
+/// What one cell holds after loading.
+struct CellStore {
+    std::vector<Voxel> voxels;
+    std::vector<EdgeFunction> edges;       ///< only at rung `edge`
+    std::vector<dvec3> intensities;        ///< per voxel, only for --display gouraud
+    std::vector<std::uint64_t> lit;        ///< per voxel, a bit per source (precast, memo)
+    std::vector<std::uint64_t> known;      ///< per voxel, a bit per source already asked for (memo)
+    std::uint32_t overflowed = 0;          ///< voxels that did not fit
+};
+
+/// Makes the voxel of the cell that the span is at and stores it, or adds it to the voxel that the same polygon has
+/// there already. Returns false if the polygon turns out not to touch the cell (or, at rung `depth`, not to cover its
+/// centre), or if the store is full; then `overflowed` counts it.
+bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level);
+
+/// Bits that one voxel takes, without its edges, and bits of one edge.
+struct VoxelBits {
+    int base = 0;
+    int per_edge = 0;
+};
+VoxelBits voxel_bits(const PictureSettings& settings, int word_bits, std::size_t sources);
+
+}  // namespace raycell
