@@ -118,8 +118,10 @@ UntimedMachine::Answer UntimedMachine::leave(const Ray& ray, Face face, const Cr
         } else {
             answer.colour = exterior_->radiance(request, ray, pixel);
         }
-        rays_.return_hops += 2;  // to the exterior and back over the border link
-        if (pixel) pixel->hops += 2;
+        // To the exterior over the border link, and back unless there is nothing to tell.
+        const unsigned hops = ray.kind == RayKind::precast && !answer.blocked ? 1 : 2;
+        rays_.return_hops += hops;
+        if (pixel) pixel->hops += hops;
     }
     if (ray.kind != RayKind::precast || answer.blocked) count_return(ray, at, pixel);
     return answer;

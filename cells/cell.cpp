@@ -1,0 +1,337 @@
+#include "cells/cell.hpp"
+
+#include <algorithm>
+
+namespace raycell {
+
+Cell::Cell(Environment& environment, int x, int y)
+    : env_(environment),
+      x_(x),
+      y_(y),
+      ray_store_(environment.machine.ray_store, waiting_generations(environment.context),
+                 environment.machine.slots) {}
+
+void Cell::connect(Side side, LinkIn* in, LinkOut* out) {
+    in_[std::size_t(side)] = in;
+    out_[std::size_t(side)] = out;
+    if (!in) return;
+    const bool horizontal = side == Side::east || side == Side::west;
+    for (int index = 0; index < env_.classes.count; ++index) {
+        const bool answers_only = index == env_.classes.answer && env_.classes.count > 1;
+        // What comes in at one side runs towards the other.
+        if (answers_only || !env_.classes.used(index, horizontal, opposite(side))) continue;
+        ray_inputs_.push_back({in, index, side});
+    }
+}
+
+void Cell::begin_phase() {
+    if (env_.context.settings.shadows == Shadows::memo && env_.phase == Phase::trace) {
+        asked_.assign(store_.voxels.size(), 0);
+    }
+    root_to_send_ = env_.phase == Phase::trace;
+    precast_next_ = 0;
+}
+
+Cycle Cell::step(Cycle now) {
+    next_ = never;
+    if (env_.phase == Phase::load) {
+        step_load(now);
+        return next_;
+    }
+    finish_traversal(now);
+    finish_shading(now);
+    move_answers(now);
+    move_replies(now);
+    feed_own(now);
+    feed_children(now);
+    move_rays(now);
+    start_traversal(now);
+    start_shading(now);
+    return next_;
+}
+
+void Cell::record(Cycle now, Event event, std::uint32_t detail) {
+    // FNV-1a over (cycle, event, detail); the array joins its cells' hashes in their order.
+    for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(detail)}) {
+        hash_ = (hash_ ^ word) * 0x100000001b3ULL;
+    }
+}
+
+// ---- traversal -----------------------------------------------------------------------------------------------
+
+RayPacket* Cell::packet_at(std::size_t place) const {
+    if (place < ray_inputs_.size()) {
+        const RayInput& input = ray_inputs_[place];
+        const Message message = input.link->front(input.index);
+        return message.kind == Message::Kind::ray ? message.ray : nullptr;
+    }
+    if (place == ray_inputs_.size()) return own_;
+    return ray_store_[std::uint32_t(place - ray_inputs_.size() - 1)].child;
+}
+
+void Cell::remove_from(std::size_t place) {
+    if (place < ray_inputs_.size()) {
+        const RayInput& input = ray_inputs_[place];
+        input.link->pop(input.index);
+        if (input.link->occupancy(input.index) > 0) want(env_.scheduler.now() + 1);
+        return;
+    }
+    if (place == ray_inputs_.size()) {
+        own_ = nullptr;
+    } else {
+        ray_store_[std::uint32_t(place - ray_inputs_.size() - 1)].child = nullptr;
+    }
+    want(env_.scheduler.now() + 1);  // the next child or own ray may follow
+}
+
+void Cell::finish_traversal(Cycle now) {
+    if (!traversal_.packet) return;
+    if (now < traversal_.done) {
+        want(traversal_.done);
+        return;
+    }
+    traversal_.packet->stage = RayPacket::Stage::decided;
+    traversal_.packet = nullptr;
+}
+
+void Cell::start_traversal(Cycle now) {
+    if (traversal_.packet) return;
+    const std::size_t places = place_count();
+    for (std::size_t i = 0; i < places; ++i) {
+        const std::size_t place = (next_test_ + i) % places;
+        RayPacket* packet = packet_at(place);
+        if (!packet || packet->stage != RayPacket::Stage::untested) continue;
+        packet->visit = visit_cell(store_, packet->ray, env_.context);
+        packet->stage = RayPacket::Stage::in_test;
+        const std::uint32_t cycles =
+            packet->ray.outside ? env_.costs().walk_step
+                                : visit_cycles(packet->visit, env_.context.settings.hit, env_.costs());
+        env_.counters.traversal_cycles += cycles;
+        traversal_ = {packet, now + cycles};
+        next_test_ = place + 1;
+        record(now, Event::test, std::uint32_t(packet->ray.id));
+        want(traversal_.done);
+        return;
+    }
+}
+
+// ---- routing -------------------------------------------------------------------------------------------------
+
+Side Cell::route(const Answer& answer) const {
+    if (answer.home_x != x_) return answer.home_x > x_ ? Side::east : Side::west;
+    return answer.home_y > y_ ? Side::south : Side::north;
+}
+
+bool Cell::send_answer(const Answer& answer, Cycle now) {
+    if (local(answer)) {
+        if (store_port_ == now) {
+            want(now + 1);
+            return false;
+        }
+        ++env_.counters.answers_sent;
+        deliver(answer, now);
+        return true;
+    }
+    LinkOut* out = out_[std::size_t(route(answer))];
+    if (!out->can_send(env_.classes.answer, next_)) return false;
+    ++env_.counters.answers_sent;
+    ++env_.counters.rays.return_hops;
+    if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer.id >> 32)].hops;
+    Answer* copy = env_.pools.answers.take();
+    *copy = answer;
+    const bool intensity = answer.kind == Answer::Kind::intensity;
+    out->send(env_.classes.answer, Message(copy),
+              env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
+    record(now, Event::send, std::uint32_t(route(answer)) << 8 | unsigned(env_.classes.answer));
+    return true;
+}
+
+void Cell::move_answers(Cycle now) {
+    const int index = env_.classes.answer;
+    for (LinkIn* in : in_) {
+        if (!in) continue;
+        const Message message = in->front(index);
+        if (message.kind != Message::Kind::answer) continue;
+        const Cycle ready = in->arrival(index) + env_.costs().route_return - 1;
+        if (now < ready) {
+            want(ready);
+            continue;
+        }
+        Answer* answer = message.answer;
+        if (local(*answer)) {
+            if (store_port_ == now) {
+                want(now + 1);
+                continue;
+            }
+            deliver(*answer, now);
+            env_.pools.answers.give_back(answer);
+        } else {
+            const Side side = route(*answer);
+            LinkOut* out = out_[std::size_t(side)];
+            if (!out->can_send(index, next_)) continue;
+            ++env_.counters.rays.return_hops;
+            if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
+            const bool intensity = answer->kind == Answer::Kind::intensity;
+            out->send(index, message, env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
+            record(now, Event::send, std::uint32_t(side) << 8 | unsigned(index));
+        }
+        in->pop(index);
+        if (in->occupancy(index) > 0) want(now + 1);
+    }
+}
+
+void Cell::move_rays(Cycle now) {
+    const std::size_t places = place_count();
+    const std::size_t first = next_move_;
+    for (std::size_t i = 0; i < places; ++i) {
+        const std::size_t place = (first + i) % places;
+        RayPacket* packet = packet_at(place);
+        if (!packet || packet->stage != RayPacket::Stage::decided) continue;
+        if (move_ray(*packet, place, now)) next_move_ = place + 1;
+    }
+}
+
+bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
+    const Ray& ray = packet.ray;
+    switch (packet.visit.event) {
+        case Visit::Event::forward: return forward(packet, place, now);
+        case Visit::Event::hit:
+            if (is_shadow(ray.kind)) return end_ray(packet, place, Answer::Kind::blocked, dvec3(0), now);
+            return accept_hit(packet, place, now);
+        case Visit::Event::reaches_source:
+            return end_ray(packet, place, Answer::Kind::lit, dvec3(0), now);
+        case Visit::Event::leaves_cube:
+            if (beyond_face(env_.context, face_of_depth(ray)) == Beyond::nothing) {
+                const bool ended = end_ray(packet, place, is_shadow(ray.kind) ? Answer::Kind::lit
+                                                                              : Answer::Kind::intensity,
+                                           env_.context.scene.background, now);
+                env_.counters.rays.lost += ended;
+                return ended;
+            }
+            start_outside(packet.ray, packet.visit.t_leave);
+            packet.stage = RayPacket::Stage::untested;
+            return true;
+    }
+    return false;
+}
+
+bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
+    Ray& ray = packet.ray;
+    const Side side = packet.visit.crossing.side;
+    const int x = x_ + step_x(side);
+    const int y = y_ + step_y(side);
+    const bool leaves = x < 0 || x >= env_.width() || y < 0 || y >= env_.height();
+    if (leaves) {
+        const Face face = ray.outside ? face_of_depth(ray) : face_of(side);
+        if (beyond_face(env_.context, face) == Beyond::nothing) {
+            const Answer::Kind kind = is_shadow(ray.kind) ? Answer::Kind::lit : Answer::Kind::intensity;
+            const bool ended = end_ray(packet, place, kind, env_.context.scene.background, now);
+            env_.counters.rays.lost += ended;
+            return ended;
+        }
+    }
+    LinkOut* out = out_[std::size_t(side)];
+    const int index = env_.classes.ray(ray);
+    if (!out->can_send(index, next_)) return false;
+    remove_from(place);
+    const int bits = is_shadow(ray.kind) ? env_.bits.shadow_ray : env_.bits.ray;
+    if (leaves) {
+        ++env_.counters.rays.exterior;
+        ++env_.counters.rays.return_hops;  // the border link, counted with its way back
+    } else {
+        cross(ray, packet.visit.crossing);
+        packet.stage = RayPacket::Stage::untested;
+        ++env_.counters.rays.ray_hops;
+    }
+    if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(ray.id >> 32)].hops;
+    out->send(index, Message(&packet), env_.cycles_for(bits));
+    record(now, Event::send, std::uint32_t(side) << 8 | unsigned(index));
+    return true;
+}
+
+bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now) {
+    if (packet.ray.kind == RayKind::precast && kind == Answer::Kind::lit) {
+        ++env_.counters.rays_silent;  // no news is good news
+        env_.counters.last_progress = now;
+    } else {
+        Answer answer = answer_to(packet.ray, kind);
+        answer.colour = colour;
+        if (!send_answer(answer, now)) return false;
+        if (kind == Answer::Kind::postponed) {
+            ++env_.counters.rays_destroyed;
+            record(now, Event::postpone, std::uint32_t(packet.ray.id));
+        } else {
+            ++env_.counters.rays_answered;
+        }
+    }
+    remove_from(place);
+    env_.pools.rays.give_back(&packet);
+    return true;
+}
+
+bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
+    const std::uint32_t object = store_.voxels[packet.visit.hit.voxel].object;
+    if (!may_wait(env_.context, packet.ray, object)) {
+        if (shading_.job != Shading::Job::idle) return false;
+        remove_from(place);
+        begin_direct(packet, now);
+        return true;
+    }
+    if (store_port_ == now) {
+        want(now + 1);
+        return false;
+    }
+    const auto index = ray_store_.allocate(packet.ray.generation);
+    if (!index) {
+        if (env_.machine.recovery == Recovery::none) return false;
+        return end_ray(packet, place, Answer::Kind::postponed, dvec3(0), now);
+    }
+    // Before the slot is filled: a child that hits its own cell comes from a slot of this same store.
+    remove_from(place);
+    store_port_ = now;
+    Slot& slot = ray_store_[*index];
+    slot.state = Slot::State::to_set_up;
+    slot.packet = &packet;
+    slot.since = now;
+    record(now, Event::accept, std::uint32_t(packet.ray.id));
+    return true;
+}
+
+// ---- reports -------------------------------------------------------------------------------------------------
+
+bool Cell::busy() const {
+    return traversal_.packet || shading_.job != Shading::Job::idle || ray_store_.used() > 0 || own_ ||
+           root_waits_ || root_to_send_;
+}
+
+std::vector<std::string> Cell::describe_blocked(Cycle now) const {
+    std::vector<std::string> lines;
+    const std::string at = "cell (" + std::to_string(x_) + ", " + std::to_string(y_) + ") ";
+    const auto ray_text = [](const Ray& ray) {
+        return "ray " + std::to_string(ray.id >> 32) + "/" + std::to_string(ray.id & 0xffffffffU) +
+               " of generation " + std::to_string(ray.generation);
+    };
+    constexpr const char* sides[] = {"east", "south", "west", "north"};
+    for (std::size_t place = 0; place < ray_inputs_.size(); ++place) {
+        const RayPacket* packet = packet_at(place);
+        if (!packet) continue;
+        const RayInput& input = ray_inputs_[place];
+        std::string line = at + "input " + sides[int(input.side)] + " class " + std::to_string(input.index) +
+                           ": " + ray_text(packet->ray) + " since cycle " +
+                           std::to_string(input.link->arrival(input.index)) + " waits for ";
+        line += packet->visit.event == Visit::Event::hit
+                    ? "a slot or the answer network"
+                    : std::string("the output ") + sides[int(packet->visit.crossing.side)];
+        lines.push_back(line);
+    }
+    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
+        const Slot& slot = ray_store_[i];
+        if (slot.state == Slot::State::empty || !slot.packet) continue;
+        lines.push_back(at + "slot " + std::to_string(i) + ": " + ray_text(slot.packet->ray) + " since cycle " +
+                        std::to_string(slot.since) + (slot.child ? ", its child can't leave" : ", waits for answers"));
+    }
+    (void)now;
+    return lines;
+}
+
+}  // namespace raycell

@@ -1,0 +1,128 @@
+// A cell's behaviour: no process of its own, a host calls step() in every cycle in which something may have changed.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cells/environment.hpp"
+#include "cells/link.hpp"
+#include "cells/ray_store.hpp"
+
+namespace raycell {
+
+/// One cell (paper, section 4): four input and four output links, a traversal unit, a shading unit, a ray store.
+/// Each unit does one thing at a time; costs come from the cost table. A ray stays in its input buffer while it is
+/// tested and until what it needs next is free: the output buffer, a slot, or the way for its answer.
+class Cell {
+  public:
+    Cell(Environment& environment, int x, int y);
+
+    /// Null links: the array's border. `load` is the way in from the row's distributor, or the west link.
+    void connect(Side side, LinkIn* in, LinkOut* out);
+    void connect_load(LinkIn* load) { load_in_ = load; }
+
+    /// Begins the environment's phase in the next cycle.
+    void begin_phase();
+
+    /// One cycle. Returns the next cycle in which the cell wants to run of itself, `never` if none.
+    Cycle step(Cycle now);
+
+    const CellStore& store() const { return store_; }
+    CellStore& store() { return store_; }
+    const RayStore& ray_store() const { return ray_store_; }
+    int x() const { return x_; }
+    int y() const { return y_; }
+    std::uint64_t schedule_hash() const { return hash_; }
+    /// True while anything in the cell is unfinished: a unit at work, a slot in use, an own ray not answered.
+    bool busy() const;
+    /// What holds the cell up, a line each ("" if nothing): for reports of runs that stopped.
+    std::vector<std::string> describe_blocked(Cycle now) const;
+
+  private:
+    struct RayInput {
+        LinkIn* link;
+        int index;
+        Side side;
+    };
+    struct Traversal {
+        RayPacket* packet = nullptr;
+        Cycle done = 0;
+    };
+    struct Shading {
+        enum class Job : std::uint8_t { idle, set_up, shade, direct, direct_answer };
+        Job job = Job::idle;
+        std::uint32_t slot = 0;
+        Cycle done = 0;
+        RayPacket* packet = nullptr;  ///< direct: a hit that waits for nothing needs no slot
+        dvec3 result{0, 0, 0};
+    };
+
+    // cell_load.cpp
+    void step_load(Cycle now);
+    void take_load(LoadItem& item);
+    // cell.cpp: traversal and routing
+    void finish_traversal(Cycle now);
+    void start_traversal(Cycle now);
+    void move_answers(Cycle now);
+    void move_replies(Cycle now);
+    void move_rays(Cycle now);
+    // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray, then the
+    // slots' child registers (last, because the store may grow while places are gone through).
+    std::size_t place_count() const { return ray_inputs_.size() + ray_store_.touched() + 1; }
+    RayPacket* packet_at(std::size_t place) const;
+    void remove_from(std::size_t place);
+    bool move_ray(RayPacket& packet, std::size_t place, Cycle now);
+    bool forward(RayPacket& packet, std::size_t place, Cycle now);
+    bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
+    bool end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
+    bool send_answer(const Answer& answer, Cycle now);
+    Side route(const Answer& answer) const;
+    // cell_shade.cpp: slots, own rays, shading unit
+    void deliver(const Answer& answer, Cycle now);
+    void deliver_to_slot(const Answer& answer, Cycle now);
+    void feed_children(Cycle now);
+    void feed_own(Cycle now);
+    RayPacket* next_child(Slot& slot, std::uint32_t index, Cycle now);
+    bool complete(const Slot& slot) const;
+    void finish_shading(Cycle now);
+    void start_shading(Cycle now);
+    void begin_direct(RayPacket& packet, Cycle now);
+    void release_slot(std::uint32_t index, Cycle now);
+    Cycle backoff(std::uint64_t id, unsigned attempt) const;
+    RayPacket* launch(const Ray& ray);
+
+    bool local(const Answer& a) const { return a.home_x == x_ && a.home_y == y_; }
+    void want(Cycle cycle) { next_ = std::min(next_, cycle); }
+    enum class Event : std::uint32_t { load = 1, send, deliver, accept, postpone, shade, test };
+    void record(Cycle now, Event event, std::uint32_t detail);
+
+    Environment& env_;
+    int x_;
+    int y_;
+    std::array<LinkIn*, side_count> in_{};
+    std::array<LinkOut*, side_count> out_{};
+    LinkIn* load_in_ = nullptr;
+    std::vector<RayInput> ray_inputs_;
+    CellStore store_;
+    RayStore ray_store_;
+    Traversal traversal_;
+    Shading shading_;
+    std::size_t next_test_ = 0;  ///< round robin over places
+    std::size_t next_move_ = 0;
+    Cycle store_port_ = never;   ///< cycle in which the ray store's one write port was used
+    Cycle load_done_ = 0;
+    LoadItem* load_item_ = nullptr;
+    RayPacket* own_ = nullptr;   ///< primary or precast ray on its way out
+    Cycle own_at_ = 0;
+    std::uint8_t own_attempts_ = 0;
+    bool root_waits_ = false;    ///< the pixel's intensity is still to come
+    bool root_to_send_ = false;
+    std::uint64_t precast_next_ = 0;  ///< voxel · sources + source
+    std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
+    std::uint64_t hash_ = 0;
+    Cycle next_ = never;
+};
+
+}  // namespace raycell

@@ -1,0 +1,39 @@
+// A host: one sc_module with its own SC_METHOD and FIFO ports for one cell, for waveforms, probes and exchange with a
+// user's own module.
+#pragma once
+
+#include <systemc>
+
+#include <array>
+
+#include "cells/cell.hpp"
+
+namespace raycell {
+
+/// Ports are bound to links; those over the array's border may stay unbound.
+class CellModule : public sc_core::sc_module, public Client {
+  public:
+    template <typename Interface>
+    using Port = sc_core::sc_port<Interface, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
+
+    SC_HAS_PROCESS(CellModule);
+    CellModule(sc_core::sc_module_name name, Environment& environment, int x, int y);
+
+    sc_core::sc_vector<Port<LinkIn>> in;    ///< by Side
+    sc_core::sc_vector<Port<LinkOut>> out;  ///< by Side
+    Port<LinkIn> load_in;                   ///< from the row's distributor (first column only)
+
+    void activate() override { wake_.notify(); }
+    Cell& cell() { return cell_; }
+    const Cell& cell() const { return cell_; }
+
+  private:
+    void end_of_elaboration() override;
+    void run();
+
+    Environment& environment_;
+    Cell cell_;
+    sc_core::sc_event wake_;
+};
+
+}  // namespace raycell

@@ -1,0 +1,61 @@
+// What all cells of an array share: settings, costs, pools, counters.
+#pragma once
+
+#include "cells/message.hpp"
+#include "cells/scheduler.hpp"
+#include "model/picture.hpp"
+#include "model/untimed.hpp"
+
+namespace raycell {
+
+enum class Phase : std::uint8_t { load, precast, trace };
+
+/// Counters of a run. Sums only: they do not depend on the order in which cells run.
+struct Counters {
+    RayCounts rays;
+    std::uint64_t load_hops = 0;
+    std::uint64_t rays_sent = 0;       ///< put on their way, again after a postponement included
+    std::uint64_t rays_answered = 0;   ///< ended in an answer
+    std::uint64_t rays_silent = 0;     ///< precast rays that reached their source
+    std::uint64_t rays_destroyed = 0;  ///< postponed
+    std::uint64_t answers_sent = 0;
+    std::uint64_t answers_delivered = 0;
+    std::uint64_t loads_sent = 0;      ///< spans and broadcast messages put into a row
+    std::uint64_t loads_delivered = 0; ///< dropped behind their last cell
+    std::uint64_t cells_loaded = 0;    ///< end-of-scene marks seen
+    std::uint64_t pixels_done = 0;
+    std::uint64_t slot_cycles = 0;     ///< sum over accepted rays of the cycles in the ray store
+    std::uint64_t traversal_cycles = 0;
+    std::uint64_t shading_cycles = 0;
+    Cycle last_progress = 0;           ///< last cycle in which an answer other than "postponed" came home
+};
+
+struct Environment {
+    Context context;
+    const MachineSettings& machine;
+    MessageBits bits;
+    BufferClasses classes;
+    Scheduler& scheduler;
+    Picture& picture;
+    MessagePools pools;
+    Counters counters;
+    Phase phase = Phase::load;
+    Cycle phase_start = 0;
+
+    Environment(const CellScene& scene, const PictureSettings& settings, const MachineSettings& machine_settings,
+                Scheduler& s, Picture& p)
+        : context{scene, settings},
+          machine(machine_settings),
+          bits(message_bits(settings, machine_settings)),
+          classes(buffer_classes(machine_settings.networks)),
+          scheduler(s),
+          picture(p) {}
+
+    int width() const { return context.scene.frame.width; }
+    int height() const { return context.scene.frame.height; }
+    const CostTable& costs() const { return machine.costs; }
+    int cycles_for(int message_bits_) const { return link_cycles(message_bits_, machine.link_bits); }
+    int load_bits(const LoadItem& item) const;
+};
+
+}  // namespace raycell

@@ -1,0 +1,81 @@
+#include "cells/link.hpp"
+
+#include <algorithm>
+
+namespace raycell {
+
+Link::Link(Scheduler& scheduler, int classes, int depth)
+    : scheduler_(scheduler), buffers_(std::size_t(classes)), depth_(depth) {}
+
+bool Link::can_send(int index, Cycle& retry) {
+    Buffer& buffer = buffers_[std::size_t(index)];
+    const Cycle now = scheduler_.now();
+    const std::uint32_t still_seen = buffer.last_pop == now ? buffer.popped_now : 0;
+    if (buffer.count + still_seen >= std::uint32_t(depth_)) {
+        if (still_seen > 0) {
+            retry = std::min(retry, now + 1);
+        } else {
+            buffer.sender_waits = true;
+        }
+        return false;
+    }
+    if (wires_free_ > now) {
+        retry = std::min(retry, wires_free_);
+        return false;
+    }
+    return true;
+}
+
+void Link::send(int index, const Message& message, int cycles) {
+    Buffer& buffer = buffers_[std::size_t(index)];
+    const Cycle now = scheduler_.now();
+    if (buffer.ring.size() < std::size_t(depth_) && buffer.count == buffer.ring.size()) {
+        // Unroll the ring before it grows, so that order is kept.
+        std::rotate(buffer.ring.begin(), buffer.ring.begin() + buffer.head, buffer.ring.end());
+        buffer.head = 0;
+        buffer.ring.emplace_back();
+    }
+    const std::size_t place = (buffer.head + buffer.count) % buffer.ring.size();
+    buffer.ring[place] = {message, now, now + Cycle(cycles)};
+    ++buffer.count;
+    ++buffer.statistics.sent;
+    // A place read in this cycle still counts: the peak must not depend on which end ran first.
+    const std::uint32_t still_seen = buffer.last_pop == now ? buffer.popped_now : 0;
+    buffer.statistics.peak = std::max(buffer.statistics.peak, int(buffer.count + still_seen));
+    wires_free_ = now + Cycle(cycles);
+    busy_cycles_ += std::uint64_t(cycles);
+    if (arrivals_) arrivals_->arrives(port_, index, wires_free_);
+    if (sink_) scheduler_.wake(*sink_, wires_free_);
+}
+
+Message Link::front(int index) const {
+    const Buffer& buffer = buffers_[std::size_t(index)];
+    if (buffer.count == 0) return {};
+    const Entry& entry = buffer.ring[buffer.head];
+    return entry.visible <= scheduler_.now() ? entry.message : Message();
+}
+
+Cycle Link::arrival(int index) const {
+    const Buffer& buffer = buffers_[std::size_t(index)];
+    return buffer.count == 0 ? never : buffer.ring[buffer.head].visible;
+}
+
+void Link::pop(int index) {
+    Buffer& buffer = buffers_[std::size_t(index)];
+    const Cycle now = scheduler_.now();
+    buffer.statistics.occupied_cycles += now - buffer.ring[buffer.head].sent;
+    ++buffer.statistics.delivered;
+    buffer.head = std::uint32_t((buffer.head + 1) % buffer.ring.size());
+    --buffer.count;
+    if (buffer.last_pop != now) {
+        buffer.last_pop = now;
+        buffer.popped_now = 0;
+    }
+    ++buffer.popped_now;
+    if (buffer.sender_waits) {
+        buffer.sender_waits = false;
+        if (source_) scheduler_.wake(*source_, now + 1);
+    }
+}
+
+}  // namespace raycell

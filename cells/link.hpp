@@ -1,0 +1,105 @@
+// A unidirectional FIFO channel between two cells: one set of wires, one buffer per class at the far end (paper,
+// section 4.3: "buffers shared by neighbouring cells").
+#pragma once
+
+#include <systemc>
+
+#include <string>
+#include <vector>
+
+#include "cells/message.hpp"
+#include "cells/scheduler.hpp"
+
+namespace raycell {
+
+/// What the sending side sees.
+class LinkOut : virtual public sc_core::sc_interface {
+  public:
+    /// Whether a message of this class can start now: wires idle and room in its buffer, as they stood when the
+    /// cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is woken
+    /// in the cycle after room was made.
+    virtual bool can_send(int index, Cycle& retry) = 0;
+    /// Starts a message; it is visible at the far end after its link cycles.
+    virtual void send(int index, const Message& message, int cycles) = 0;
+};
+
+/// What the receiving side sees.
+class LinkIn : virtual public sc_core::sc_interface {
+  public:
+    /// The oldest message of a class if it has arrived, else an empty one.
+    virtual Message front(int index) const = 0;
+    /// Cycle in which the oldest message arrived.
+    virtual Cycle arrival(int index) const = 0;
+    virtual void pop(int index) = 0;
+    /// Messages in a buffer, those still on the wires included.
+    virtual int occupancy(int index) const = 0;
+};
+
+/// The channel. Writes and reads of a cycle show in the next one, so the order in which cells run does not matter.
+class Link : public LinkOut, public LinkIn {
+  public:
+    struct ClassStatistics {
+        std::uint64_t sent = 0;
+        std::uint64_t delivered = 0;
+        std::uint64_t occupied_cycles = 0;  ///< sum over messages of the cycles that they took up a place
+        int peak = 0;
+    };
+
+    Link(Scheduler& scheduler, int classes, int depth);
+
+    void connect_source(Client& source) { source_ = &source; }
+    void connect_sink(Client& sink) { sink_ = &sink; }
+    /// For sinks with many links: called with `port` and the cycle in which a message of a class will be visible.
+    struct Arrivals {
+        virtual ~Arrivals() = default;
+        virtual void arrives(std::uint32_t port, int index, Cycle visible) = 0;
+    };
+    void report_arrivals(Arrivals& arrivals, std::uint32_t port) {
+        arrivals_ = &arrivals;
+        port_ = port;
+    }
+    /// The name as "cell_3_4.east", for reports.
+    void set_name(std::string name) { name_ = std::move(name); }
+    const std::string& name() const { return name_; }
+
+    bool can_send(int index, Cycle& retry) override;
+    void send(int index, const Message& message, int cycles) override;
+    Message front(int index) const override;
+    Cycle arrival(int index) const override;
+    void pop(int index) override;
+    int occupancy(int index) const override { return int(buffers_[std::size_t(index)].count); }
+
+    int classes() const { return int(buffers_.size()); }
+    int depth() const { return depth_; }
+    const ClassStatistics& statistics(int index) const { return buffers_[std::size_t(index)].statistics; }
+    std::uint64_t busy_cycles() const { return busy_cycles_; }
+
+  private:
+    struct Entry {
+        Message message;
+        Cycle sent = 0;
+        Cycle visible = 0;
+    };
+    struct Buffer {
+        std::vector<Entry> ring;  ///< grows to `depth` at most
+        std::uint32_t head = 0;
+        std::uint32_t count = 0;
+        std::uint32_t popped_now = 0;  ///< in cycle last_pop: not yet room for the sender
+        Cycle last_pop = never;
+        bool sender_waits = false;
+        ClassStatistics statistics;
+    };
+
+    Scheduler& scheduler_;
+    Client* source_ = nullptr;
+    Client* sink_ = nullptr;
+    Arrivals* arrivals_ = nullptr;
+    std::uint32_t port_ = 0;
+    std::vector<Buffer> buffers_;
+    int depth_;
+    Cycle wires_free_ = 0;
+    std::uint64_t busy_cycles_ = 0;
+    std::string name_;
+};
+
+}  // namespace raycell

@@ -1,0 +1,61 @@
+// The ray store: M slots for rays that wait for answers (paper, section 4.2).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "cells/message.hpp"
+#include "cells/scheduler.hpp"
+
+namespace raycell {
+
+/// A ray that hit, and what is still missing for its intensity.
+struct Slot {
+    enum class State : std::uint8_t { empty, to_set_up, in_setup, waiting, in_shading, to_answer };
+    State state = State::empty;
+    RayPacket* packet = nullptr;
+    HitSetup setup;
+    std::uint64_t to_ask = 0;   ///< sources whose shadow ray is still to be sent
+    std::uint64_t awaited = 0;  ///< sources whose verdict is still to come (per-hit)
+    std::uint64_t lit = 0;
+    bool send_child[2] = {false, false};   ///< reflected, refracted: to be sent (again)
+    bool await_child[2] = {false, false};  ///< answer still to come
+    Cycle send_at[2] = {0, 0};             ///< not before: back-off after a postponement
+    std::uint8_t attempts[2] = {0, 0};
+    dvec3 colour[2] = {dvec3(0), dvec3(0)};
+    RayPacket* child = nullptr;  ///< on its way out of the cell, one at a time
+    dvec3 result{0, 0, 0};
+    Cycle since = 0;  ///< when the ray was accepted
+};
+
+/// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest is free
+/// for all; when M is smaller than their number, the deepest generations share the last (design, section 5).
+class RayStore {
+  public:
+    RayStore(int capacity, int generations, Slots policy);
+
+    /// The index of a slot for a ray of this generation, or nothing.
+    std::optional<std::uint32_t> allocate(int generation);
+    void release(std::uint32_t index, int generation);
+
+    Slot& operator[](std::uint32_t index) { return slots_[index]; }
+    const Slot& operator[](std::uint32_t index) const { return slots_[index]; }
+    /// Slots ever used: what a scan has to look at.
+    std::uint32_t touched() const { return std::uint32_t(slots_.size()); }
+    int used() const { return used_; }
+    int capacity() const { return capacity_; }
+    int peak() const { return peak_; }
+
+  private:
+    std::size_t group(int generation) const;
+
+    int capacity_;
+    int shared_;  ///< slots free for all
+    std::vector<std::uint16_t> used_by_;  ///< per reserved group; empty with policy `free`
+    std::vector<Slot> slots_;             ///< grows to `capacity`
+    std::vector<std::uint32_t> free_;
+    int used_ = 0;
+    int peak_ = 0;
+};
+
+}  // namespace raycell

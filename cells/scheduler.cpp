@@ -1,0 +1,68 @@
+#include "cells/scheduler.hpp"
+
+namespace raycell {
+
+Scheduler::Scheduler(sc_core::sc_module_name name, sc_core::sc_time period)
+    : sc_module(name), period_(period), wheel_(slots) {
+    SC_METHOD(tick);
+    sensitive << next_;
+    dont_initialize();
+}
+
+void Scheduler::wake(Client& client, Cycle cycle) {
+    if (cycle - now_ < slots) {
+        wheel_[cycle % slots].push_back(&client);
+        ++waiting_;
+    } else {
+        far_[cycle].push_back(&client);
+    }
+    schedule(cycle);
+}
+
+void Scheduler::schedule(Cycle cycle) {
+    if (stopped_ || cycle >= scheduled_) return;
+    if (cycle > limit_) {
+        limit_reached_ = true;
+        return;
+    }
+    scheduled_ = cycle;
+    // An earlier notification replaces a later one.
+    next_.notify(sc_core::sc_time::from_value(period_.value() * (cycle - now_)));
+}
+
+Cycle Scheduler::next_busy() const {
+    Cycle next = far_.empty() ? never : far_.begin()->first;
+    if (waiting_ > 0) {
+        for (Cycle c = now_ + 1; c < now_ + slots && c < next; ++c) {
+            if (!wheel_[c % slots].empty()) return c;
+        }
+    }
+    return next;
+}
+
+void Scheduler::tick() {
+    now_ = scheduled_;
+    scheduled_ = never;
+    if (watch_ && !watch_(watch_argument_, now_)) {
+        stopped_ = true;
+        return;
+    }
+    running_.clear();
+    running_.swap(wheel_[now_ % slots]);
+    waiting_ -= running_.size();
+    const auto far = far_.find(now_);
+    if (far != far_.end()) {
+        running_.insert(running_.end(), far->second.begin(), far->second.end());
+        far_.erase(far);
+    }
+    for (Client* client : running_) {
+        if (client->woken_ == now_) continue;
+        client->woken_ = now_;
+        ++activations_;
+        client->activate();
+    }
+    const Cycle next = next_busy();
+    if (next != never) schedule(next);
+}
+
+}  // namespace raycell

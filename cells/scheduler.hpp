@@ -1,0 +1,77 @@
+// Cycles without a free-running clock: a time wheel that wakes what has something to do, and nothing else.
+#pragma once
+
+#include <systemc>
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace raycell {
+
+using Cycle = std::uint64_t;
+constexpr Cycle never = ~Cycle(0);
+
+/// Something that acts at discrete cycles. A client is woken at most once per cycle.
+class Client {
+  public:
+    virtual ~Client() = default;
+    /// Makes the client's process run in this evaluation phase.
+    virtual void activate() = 0;
+
+  private:
+    friend class Scheduler;
+    Cycle woken_ = never;  ///< last cycle in which it was activated
+};
+
+/// One SC_METHOD that runs in each cycle in which somebody is to be woken.
+class Scheduler : public sc_core::sc_module {
+  public:
+    SC_HAS_PROCESS(Scheduler);
+    Scheduler(sc_core::sc_module_name name, sc_core::sc_time period);
+
+    Cycle now() const { return now_; }
+    sc_core::sc_time period() const { return period_; }
+
+    /// Activates `client` in `cycle`, which must lie after now() (or be now() before anything has run).
+    void wake(Client& client, Cycle cycle);
+
+    /// No cycle after this one is run; limit_reached() tells that there would have been one.
+    void set_limit(Cycle limit) { limit_ = limit; }
+    bool limit_reached() const { return limit_reached_; }
+
+    /// Called before the clients of a cycle; returning false ends the run: nobody is woken any more.
+    void set_watch(bool (*watch)(void*, Cycle), void* argument) {
+        watch_ = watch;
+        watch_argument_ = argument;
+    }
+
+    /// Lets time pass without running anybody: for looking at a run that has stopped.
+    void skip(Cycle cycles) { now_ += cycles; }
+
+    std::uint64_t activations() const { return activations_; }
+
+  private:
+    static constexpr Cycle slots = 4096;  // power of two, above every usual delay
+
+    void tick();
+    void schedule(Cycle cycle);
+    Cycle next_busy() const;
+
+    sc_core::sc_time period_;
+    sc_core::sc_event next_;
+    std::vector<std::vector<Client*>> wheel_;
+    std::vector<Client*> running_;
+    std::map<Cycle, std::vector<Client*>> far_;  ///< beyond one turn of the wheel
+    Cycle now_ = 0;
+    Cycle scheduled_ = never;
+    Cycle limit_ = never;
+    std::uint64_t waiting_ = 0;  ///< entries in the wheel
+    std::uint64_t activations_ = 0;
+    bool limit_reached_ = false;
+    bool stopped_ = false;
+    bool (*watch_)(void*, Cycle) = nullptr;
+    void* watch_argument_ = nullptr;
+};
+
+}  // namespace raycell

@@ -1,0 +1,84 @@
+#include "model/message.hpp"
+
+namespace raycell {
+namespace {
+
+int bits_for(int values) {
+    int bits = 0;
+    while ((1 << bits) < values) ++bits;
+    return bits;
+}
+
+}  // namespace
+
+Answer answer_to(const Ray& ray, Answer::Kind kind) {
+    Answer answer;
+    answer.kind = kind;
+    answer.id = ray.id;
+    answer.slot = ray.slot;
+    answer.home_x = ray.home_x;
+    answer.home_y = ray.home_y;
+    answer.child = ray.child;
+    answer.ray_kind = ray.kind;
+    return answer;
+}
+
+MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine) {
+    const int word = machine.word_bits;
+    constexpr int type = 3;
+    constexpr int polygon_id = 20;
+    constexpr int generation = 6;
+    constexpr int child = 6;
+    const int home = bits_for(picture.width) + bits_for(picture.height);
+    const int slot = bits_for(machine.ray_store) + 1;
+    const int address = home + slot + child;
+    MessageBits bits;
+    // Position 3 words, direction 3, reciprocals of dx and dy 2, weight 1; flags: fresh, outside, side left.
+    bits.ray = type + 9 * word + polygon_id + generation + address + 3;
+    bits.shadow_ray = type + 9 * word + polygon_id + address + 3;  // its reach stands for the weight
+    bits.intensity = type + 3 * word + address;
+    bits.verdict = type + address;
+    const int columns = 2 * bits_for(picture.width);
+    const int gouraud = picture.display == Display::gouraud ? 6 * word : 0;
+    const int normals = 9 * word;
+    const int plane = 4 * word + 2;
+    const int edges = 4 * 3 * word + 3;
+    // X1, Xr, near and far with their increments and bounds, plane, normal field, edges (paper, section 3.1).
+    bits.span = type + polygon_id + columns + 6 * word + plane + normals + edges + gouraud;
+    bits.trapeze = type + polygon_id + 4 * 3 * word + plane + normals + edges + 2 * gouraud;
+    bits.features = type + 3 * 8 + 3 * 8 + 12 + 12 + 1;
+    bits.end_of_scene = type;
+    bits.viewer = type + 3 * word + 6;
+    bits.source = 6 * word;
+    return bits;
+}
+
+BufferClasses buffer_classes(Networks networks) {
+    BufferClasses classes;
+    classes.networks = networks;
+    switch (networks) {
+        case Networks::shared: classes.count = 1; classes.answer = 0; break;
+        case Networks::split: classes.count = 2; classes.answer = 1; break;
+        case Networks::half: classes.count = 3; classes.answer = 2; break;
+        case Networks::quadrant: classes.count = 5; classes.answer = 4; break;
+    }
+    return classes;
+}
+
+int BufferClasses::ray(const Ray& r) const {
+    const int west = r.direction.x < 0 ? 1 : 0;
+    const int north = r.direction.y < 0 ? 1 : 0;
+    if (networks == Networks::half) return west;
+    if (networks == Networks::quadrant) return 2 * north + west;
+    return 0;
+}
+
+bool BufferClasses::used(int index, bool horizontal, Side side) const {
+    if (index == answer || networks == Networks::shared || networks == Networks::split) return true;
+    const bool west = index & 1;
+    if (horizontal) return west == (side == Side::west);
+    if (networks == Networks::half) return true;
+    return (index >> 1 & 1) == (side == Side::north ? 1 : 0);
+}
+
+}  // namespace raycell

@@ -1,0 +1,85 @@
+#include "pipeline/distribution.hpp"
+
+namespace raycell {
+
+void RowDistributor::take(LoadItem& item, Cycle now) {
+    Environment& env = environment();
+    item_ = &item;
+    passed_on_ = false;
+    const bool last_row = row_ + 1 == env.height();
+    std::uint64_t work = env.costs().distribution_pass;
+    if (item.kind == LoadItem::Kind::trapeze) {
+        goes_down_ = !last_row && item.trapeze.reaches_below(row_);
+        const bool gouraud = env.context.settings.display == Display::gouraud;
+        if (row_ >= item.trapeze.first_row()) {
+            work = env.costs().distribution_span;
+            auto span = cut_span(item.trapeze, row_, env.width(), gouraud ? &item.intensities : nullptr);
+            if (span) {
+                to_row_ = env.pools.loads.take();
+                to_row_->kind = LoadItem::Kind::span;
+                to_row_->span = *span;
+                ++statistics_.items;
+            }
+        }
+        statistics_.busy_cycles += work;
+    } else {
+        goes_down_ = !last_row;
+        to_row_ = env.pools.loads.take();
+        to_row_->kind = item.kind;
+        to_row_->object = item.object;
+        statistics_.busy_cycles += work;
+    }
+    ready_ = now + work;
+}
+
+Cycle RowDistributor::step(Cycle now) {
+    Environment& env = environment();
+    Cycle retry = never;
+    if (!item_) {
+        const Message message = in->front(0);
+        if (message.kind != Message::Kind::load) return never;
+        take(*message.load, now);
+    }
+    if (now < ready_) return ready_;
+    if (to_row_ && east->can_send(0, retry)) {
+        ++env.counters.loads_sent;
+        east->send(0, Message(to_row_), env.cycles_for(env.load_bits(*to_row_)));
+        to_row_ = nullptr;
+    }
+    if (goes_down_ && down->can_send(0, retry)) {
+        down->send(0, Message(item_), env.cycles_for(env.load_bits(*item_)));
+        goes_down_ = false;
+        passed_on_ = true;
+    }
+    if (to_row_ || goes_down_) return retry;
+    if (!passed_on_) env.pools.loads.give_back(item_);
+    in->pop(0);
+    item_ = nullptr;
+    return now + 1;
+}
+
+Distribution::Distribution(sc_core::sc_module_name name, Environment& environment) : sc_module(name) {
+    for (int y = 0; y < environment.height(); ++y) {
+        const std::string row_name = "row_" + std::to_string(y);
+        rows_.push_back(std::make_unique<RowDistributor>(row_name.c_str(), environment, y));
+        if (y == 0) continue;
+        links_.push_back(std::make_unique<Link>(environment.scheduler, 1, environment.machine.buffer_depth));
+        Link& link = *links_.back();
+        link.set_name("distribution.row_" + std::to_string(y - 1) + ".down");
+        link.connect_source(*rows_[std::size_t(y - 1)]);
+        link.connect_sink(*rows_.back());
+        rows_[std::size_t(y - 1)]->down.bind(link);
+        rows_.back()->in.bind(link);
+    }
+}
+
+StageStatistics Distribution::statistics() const {
+    StageStatistics sum;
+    for (const auto& row : rows_) {
+        sum.items += row->statistics().items;
+        sum.busy_cycles += row->statistics().busy_cycles;
+    }
+    return sum;
+}
+
+}  // namespace raycell

@@ -1,0 +1,112 @@
+#include "pipeline/exterior.hpp"
+
+#include <algorithm>
+
+namespace raycell {
+
+Exterior::Exterior(sc_core::sc_module_name name, Environment& environment, const ExteriorTracer& tracer)
+    : Stage(name, environment),
+      tracer_(tracer),
+      processors_(std::size_t(environment.machine.exterior_processors)) {}
+
+void Exterior::join(Array& array) {
+    Environment& env = environment();
+    const auto join_cell = [&](int x, int y, Side side) {
+        const auto make = [&](const char* way) {
+            links_.push_back(std::make_unique<Link>(env.scheduler, env.classes.count, env.machine.buffer_depth));
+            links_.back()->set_name("border_" + std::to_string(x) + "_" + std::to_string(y) + way);
+            return links_.back().get();
+        };
+        Link* out = make(".out");
+        Link* in = make(".in");
+        out->connect_source(array.cell(x, y));
+        out->connect_sink(*this);
+        out->report_arrivals(*this, std::uint32_t(ports_.size()));
+        in->connect_source(*this);
+        in->connect_sink(array.cell(x, y));
+        array.join_border(x, y, side, in, out);
+        ports_.push_back({x, y, out, in});
+    };
+    for (int y = 0; y < env.height(); ++y) {
+        join_cell(0, y, Side::west);
+        join_cell(env.width() - 1, y, Side::east);
+    }
+    for (int x = 0; x < env.width(); ++x) {
+        join_cell(x, 0, Side::north);
+        join_cell(x, env.height() - 1, Side::south);
+    }
+}
+
+void Exterior::arrives(std::uint32_t port, int index, Cycle visible) { waiting_.emplace(visible, port, index); }
+
+void Exterior::begin(Processor& processor, std::uint32_t port, int index, Cycle now) {
+    Environment& env = environment();
+    const BorderPort& border = ports_[port];
+    RayPacket* packet = border.from_cell->front(index).ray;
+    const Ray& ray = packet->ray;
+    const ExteriorRequest request = exterior_request(ray, packet->visit.crossing, border.x, border.y,
+                                                     env.context.scene.frame.depth);
+    processor = Processor();
+    processor.busy = true;
+    processor.port = port;
+    processor.done = now + Cycle(env.machine.exterior_latency);
+    if (is_shadow(ray.kind)) {
+        const bool blocked = tracer_.blocked(request, ray);
+        processor.answer = answer_to(ray, blocked ? Answer::Kind::blocked : Answer::Kind::lit);
+        processor.silent = ray.kind == RayKind::precast && !blocked;
+    } else {
+        Pixel* pixel = ray.kind == RayKind::primary ? &env.picture.at(ray.home_x, ray.home_y) : nullptr;
+        processor.answer = answer_to(ray, Answer::Kind::intensity);
+        processor.answer.colour = tracer_.radiance(request, ray, pixel);
+    }
+    border.from_cell->pop(index);
+    env.pools.rays.give_back(packet);
+    statistics_.busy_cycles += std::uint64_t(env.machine.exterior_latency);
+    ++statistics_.items;
+    ++working_;
+}
+
+Cycle Exterior::step(Cycle now) {
+    Environment& env = environment();
+    Cycle next = never;
+    for (Processor& processor : processors_) {
+        if (!processor.busy) continue;
+        if (now < processor.done) {
+            next = std::min(next, processor.done);
+            continue;
+        }
+        if (processor.silent) {
+            ++env.counters.rays_silent;
+            env.counters.last_progress = now;
+        } else {
+            Link* link = ports_[processor.port].to_cell;
+            if (!link->can_send(env.classes.answer, next)) continue;
+            const bool intensity = processor.answer.kind == Answer::Kind::intensity;
+            Answer* answer = env.pools.answers.take();
+            *answer = processor.answer;
+            link->send(env.classes.answer, Message(answer),
+                       env.cycles_for(intensity ? env.bits.intensity : env.bits.verdict));
+            ++env.counters.rays_answered;
+            ++env.counters.answers_sent;
+            ++env.counters.rays.return_hops;
+            if (env.phase == Phase::trace) ++env.picture.pixels[std::size_t(processor.answer.id >> 32)].hops;
+        }
+        processor.busy = false;
+        --working_;
+    }
+    while (!waiting_.empty() && working_ < int(processors_.size())) {
+        const auto [visible, port, index] = *waiting_.begin();
+        if (visible > now) {
+            next = std::min(next, visible);
+            break;
+        }
+        waiting_.erase(waiting_.begin());
+        const auto idle = std::find_if(processors_.begin(), processors_.end(),
+                                       [](const Processor& p) { return !p.busy; });
+        begin(*idle, port, index, now);
+        next = std::min(next, idle->done);
+    }
+    return next;
+}
+
+}  // namespace raycell

@@ -1,0 +1,53 @@
+// The exterior processors: trace the rays that leave the cube classically, through the whole scene (paper, section 3.3).
+#pragma once
+
+#include <memory>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "cells/array.hpp"
+#include "pipeline/stage.hpp"
+
+namespace raycell {
+
+/// Joined to every border link. Rays queue in the border links' own buffers until one of the processors is free; its
+/// answer goes back over the same border link after the processor's latency.
+class Exterior : public Stage, public Link::Arrivals {
+  public:
+    Exterior(sc_core::sc_module_name name, Environment& environment, const ExteriorTracer& tracer);
+
+    /// Makes the border links and joins them to the array. Before the simulation starts.
+    void join(Array& array);
+
+    const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
+    void arrives(std::uint32_t port, int index, Cycle visible) override;
+    bool busy() const { return !waiting_.empty() || working_ > 0; }
+
+  private:
+    struct BorderPort {
+        int x;
+        int y;
+        Link* from_cell;
+        Link* to_cell;
+    };
+    struct Processor {
+        bool busy = false;
+        std::uint32_t port = 0;
+        Answer answer;
+        bool silent = false;
+        Cycle done = 0;
+    };
+
+    Cycle step(Cycle now) override;
+    void begin(Processor& processor, std::uint32_t port, int index, Cycle now);
+
+    const ExteriorTracer& tracer_;
+    std::vector<BorderPort> ports_;
+    std::vector<std::unique_ptr<Link>> links_;
+    std::vector<Processor> processors_;
+    std::set<std::tuple<Cycle, std::uint32_t, int>> waiting_;  ///< (visible, port, class): oldest first
+    int working_ = 0;
+};
+
+}  // namespace raycell

@@ -1,0 +1,271 @@
+#include "pipeline/machine.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "model/loading.hpp"
+
+namespace raycell {
+namespace {
+
+constexpr int stage_link_depth = 4;  ///< messages between two stages before the array
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+const char* name_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::completed: return "completed";
+        case Verdict::deadlock: return "deadlock";
+        case Verdict::livelock: return "livelock";
+        case Verdict::cycle_limit: return "cycle_limit";
+        case Verdict::capacity: return "capacity";
+    }
+    return "";
+}
+
+Machine::Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
+                 const MachineSettings& machine, const ExteriorTracer* tracer)
+    : sc_module(name),
+      scheduler_("scheduler", sc_core::sc_time(1e3 / machine.clock_mhz, sc_core::SC_NS)),
+      picture_(scene.frame.width, scene.frame.height),
+      environment_(scene, settings, machine, scheduler_, picture_),
+      geometry_("geometry", environment_),
+      precomputation_("precomputation", environment_),
+      distribution_("distribution", environment_),
+      array_("array", environment_),
+      to_precomputation_(scheduler_, 1, stage_link_depth),
+      to_distribution_(scheduler_, 1, stage_link_depth) {
+    if (machine.max_cycles > 0) scheduler_.set_limit(Cycle(machine.max_cycles));
+    scheduler_.set_watch(&Machine::watch, this);
+    bind_pipeline();
+    const bool anything_beyond =
+        std::any_of(scene.beyond.begin(), scene.beyond.end(), [](bool b) { return b; });
+    if (settings.exterior == ExteriorMode::host && anything_beyond && settings.stage == RunStage::trace) {
+        if (!tracer) throw std::invalid_argument("exterior 'host' needs a tracer for what lies outside the cube");
+        exterior_ = std::make_unique<Exterior>("exterior", environment_, *tracer);
+        exterior_->join(array_);
+    }
+}
+
+void Machine::bind_pipeline() {
+    to_precomputation_.set_name("geometry.out");
+    to_precomputation_.connect_source(geometry_);
+    to_precomputation_.connect_sink(precomputation_);
+    geometry_.out.bind(to_precomputation_);
+    precomputation_.in.bind(to_precomputation_);
+
+    to_distribution_.set_name("precomputation.out");
+    to_distribution_.connect_source(precomputation_);
+    to_distribution_.connect_sink(distribution_.row(0));
+    precomputation_.out.bind(to_distribution_);
+    distribution_.row(0).in.bind(to_distribution_);
+
+    for (int y = 0; y < environment_.height(); ++y) {
+        row_links_.push_back(
+            std::make_unique<Link>(scheduler_, 1, environment_.machine.buffer_depth));
+        Link& link = *row_links_.back();
+        link.set_name("distribution.row_" + std::to_string(y) + ".east");
+        link.connect_source(distribution_.row(y));
+        link.connect_sink(array_.cell(0, y));
+        distribution_.row(y).east.bind(link);
+        array_.cell(0, y).load_in.bind(link);
+    }
+}
+
+Cycle Machine::livelock_window() const {
+    // The longest back-off is 127 bases; a ray and its answer may cross the array, all others before them.
+    const Cycle span = Cycle(environment_.width() + environment_.height());
+    return 1000 * (Cycle(environment_.costs().backoff) * 128 + span * 64);
+}
+
+bool Machine::watch(void* self, Cycle now) {
+    auto& machine = *static_cast<Machine*>(self);
+    Environment& env = machine.environment_;
+    if (env.phase == Phase::trace && env.counters.rays_destroyed > 0 &&
+        now - std::max(env.counters.last_progress, env.phase_start) > machine.livelock_window()) {
+        machine.livelock_ = true;
+        return false;
+    }
+    constexpr std::uint64_t calls_between_reports = 4096;
+    if (machine.progress_ && ++machine.watch_calls_ % calls_between_reports == 0) {
+        constexpr const char* names[] = {"load", "precast", "trace"};
+        const std::uint64_t cells = std::uint64_t(env.width()) * std::uint64_t(env.height());
+        machine.progress_({names[int(env.phase)], now,
+                           env.phase == Phase::load ? env.counters.cells_loaded : env.counters.pixels_done, cells,
+                           env.counters.load_hops + env.counters.rays.ray_hops + env.counters.rays.return_hops});
+    }
+    return true;
+}
+
+void Machine::run_phase(Phase phase, RunResult& result) {
+    const auto wall = std::chrono::steady_clock::now();
+    environment_.phase = phase;
+    environment_.phase_start = scheduler_.now();
+    if (phase == Phase::load) {
+        geometry_.start();
+    } else {
+        array_.begin_phase();
+    }
+    // No free-running clock: this returns when nobody has anything to do any more.
+    sc_core::sc_start();
+    const Cycle cycles = scheduler_.now() - environment_.phase_start;
+    const double seconds = seconds_since(wall);
+    switch (phase) {
+        case Phase::load: result.load_cycles = cycles, result.wall_load = seconds; break;
+        case Phase::precast: result.precast_cycles = cycles, result.wall_precast = seconds; break;
+        case Phase::trace: result.trace_cycles = cycles, result.wall_trace = seconds; break;
+    }
+    if (!phase_complete(result)) judge(result);
+}
+
+bool Machine::phase_complete(const RunResult&) const {
+    const Counters& c = environment_.counters;
+    const std::uint64_t cells = std::uint64_t(environment_.width()) * std::uint64_t(environment_.height());
+    switch (environment_.phase) {
+        case Phase::load: return c.cells_loaded == cells;
+        case Phase::precast:
+            return c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed &&
+                   c.answers_sent == c.answers_delivered &&
+                   std::none_of(array_.cells().begin(), array_.cells().end(),
+                                [](const auto& cell) { return cell->cell().busy(); });
+        case Phase::trace: return c.pixels_done == cells;
+    }
+    return false;
+}
+
+void Machine::judge(RunResult& result) {
+    if (livelock_) {
+        result.verdict = Verdict::livelock;
+    } else if (scheduler_.limit_reached()) {
+        result.verdict = Verdict::cycle_limit;
+    } else {
+        result.verdict = Verdict::deadlock;
+        if (kick_finds_work()) throw std::logic_error("internal error: a cell that could move was not woken");
+    }
+    result.report = stuck_report();
+}
+
+/// Nothing moves by itself: if a step of any cell now changes something, its waking was lost, and the verdict would
+/// be the model's fault, not the machine's.
+bool Machine::kick_finds_work() {
+    const std::uint64_t before = array_.schedule_hash();
+    scheduler_.skip(1 << 20);  // past every transfer and back-off
+    for (const auto& cell : array_.cells()) cell->cell().step(scheduler_.now());
+    return array_.schedule_hash() != before;
+}
+
+std::vector<std::string> Machine::stuck_report() const {
+    std::vector<std::string> lines;
+    for (const auto& cell : array_.cells()) {
+        auto more = cell->cell().describe_blocked(scheduler_.now());
+        lines.insert(lines.end(), more.begin(), more.end());
+    }
+    const auto age = [](const std::string& line) {
+        const auto at = line.find("since cycle ");
+        return at == std::string::npos ? 0ULL : std::stoull(line.substr(at + 12));
+    };
+    std::stable_sort(lines.begin(), lines.end(),
+                     [&](const std::string& a, const std::string& b) { return age(a) < age(b); });
+    return lines;
+}
+
+RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
+    progress_ = std::move(progress);
+    RunResult result;
+    const PictureSettings& settings = environment_.context.settings;
+    run_phase(Phase::load, result);
+    if (settings.shadows != Shadows::per_hit) {
+        for (const auto& cell : array_.cells()) reset_shadow_bits(cell->cell().store());
+    }
+    const auto going = [&] { return result.verdict == Verdict::completed; };
+    if (settings.stage == RunStage::load) {
+        if (going()) {
+            for (const auto& cell : array_.cells()) {
+                const Cell& c = cell->cell();
+                picture_.at(c.x(), c.y()) = display_cell(environment_.context, c.store(), c.x(), c.y());
+            }
+        }
+    } else {
+        if (going() && settings.shadows == Shadows::precast) run_phase(Phase::precast, result);
+        if (going()) run_phase(Phase::trace, result);
+    }
+    if (going()) check_conservation(result);
+    collect(result);
+    if (going() && result.overflowed > 0) result.verdict = Verdict::capacity;
+    result.picture = picture_;
+    return result;
+}
+
+void Machine::check_conservation(const RunResult&) const {
+    const Counters& c = environment_.counters;
+    const bool rays = c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed;
+    const bool answers = c.answers_sent == c.answers_delivered;
+    const bool loads = c.loads_sent == c.loads_delivered;
+    const bool nothing_left = environment_.pools.rays.in_use() == 0 && environment_.pools.answers.in_use() == 0 &&
+                              environment_.pools.loads.in_use() == 0;
+    if (rays && answers && loads && nothing_left) return;
+    throw std::logic_error(
+        "internal error: messages are not conserved: rays " + std::to_string(c.rays_sent) + " sent, " +
+        std::to_string(c.rays_answered) + " answered, " + std::to_string(c.rays_silent) + " silent, " +
+        std::to_string(c.rays_destroyed) + " destroyed; answers " + std::to_string(c.answers_sent) + " sent, " +
+        std::to_string(c.answers_delivered) + " delivered; load messages " + std::to_string(c.loads_sent) +
+        " sent, " + std::to_string(c.loads_delivered) + " delivered");
+}
+
+void Machine::collect(RunResult& result) const {
+    result.counters = environment_.counters;
+    result.geometry = geometry_.statistics();
+    result.precomputation = precomputation_.statistics();
+    result.distribution = distribution_.statistics();
+    if (exterior_) result.exterior = exterior_->statistics();
+    for (const auto& cell : array_.cells()) {
+        const CellStore& store = cell->cell().store();
+        result.voxels += store.voxels.size();
+        result.max_voxels = std::max(result.max_voxels, std::uint64_t(store.voxels.size()));
+        result.occupied_cells += !store.voxels.empty();
+        result.edges += store.edges.size();
+        result.overflowed += store.overflowed;
+        result.ray_store_peak = std::max(result.ray_store_peak, cell->cell().ray_store().peak());
+    }
+    if (result.trace_cycles > 0) {
+        result.ray_store_mean = double(result.counters.slot_cycles) /
+                                (double(result.trace_cycles) * double(array_.cells().size()));
+    }
+    result.schedule_hash = array_.schedule_hash();
+    collect_buffers(result);
+}
+
+void Machine::collect_buffers(RunResult& result) const {
+    static const char* const quadrants[] = {"ray_east_south", "ray_west_south", "ray_east_north",
+                                            "ray_west_north", "answer"};
+    static const char* const halves[] = {"ray_east", "ray_west", "answer"};
+    static const char* const split[] = {"ray", "answer"};
+    static const char* const shared[] = {"all"};
+    const Networks networks = environment_.machine.networks;
+    const char* const* names = networks == Networks::quadrant ? quadrants
+                               : networks == Networks::half   ? halves
+                               : networks == Networks::split  ? split
+                                                              : shared;
+    for (int index = 0; index < environment_.classes.count; ++index) {
+        RunResult::BufferUse use;
+        use.name = names[index];
+        double occupied = 0;
+        double buffers = 0;
+        for (const auto& link : array_.links()) {
+            const Link::ClassStatistics& s = link->statistics(index);
+            use.peak = std::max(use.peak, s.peak);
+            occupied += double(s.occupied_cycles);
+            buffers += s.sent > 0 ? 1 : 0;  // a class that a link never carries has no buffer there
+        }
+        const double cycles = double(scheduler_.now());
+        if (buffers > 0 && cycles > 0) use.mean = occupied / (buffers * cycles);
+        result.buffers.push_back(use);
+    }
+}
+
+}  // namespace raycell

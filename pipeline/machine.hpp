@@ -1,0 +1,104 @@
+// The whole machine: binds the stages, the array and the exterior, and runs the phases.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cells/array.hpp"
+#include "pipeline/distribution.hpp"
+#include "pipeline/exterior.hpp"
+#include "pipeline/geometry.hpp"
+#include "pipeline/precomputation.hpp"
+
+namespace raycell {
+
+enum class Verdict { completed, deadlock, livelock, cycle_limit, capacity };
+const char* name_of(Verdict verdict);
+
+/// What a run of either engine tells about itself. Cycles are 0 for the untimed one.
+struct RunResult {
+    Verdict verdict = Verdict::completed;
+    Picture picture;
+    Cycle load_cycles = 0;
+    Cycle precast_cycles = 0;
+    Cycle trace_cycles = 0;
+    StageStatistics geometry;
+    StageStatistics precomputation;
+    StageStatistics distribution;
+    StageStatistics exterior;
+    Counters counters;
+    std::uint64_t voxels = 0;
+    std::uint64_t max_voxels = 0;
+    std::uint64_t occupied_cells = 0;
+    std::uint64_t edges = 0;
+    std::uint64_t overflowed = 0;
+    int ray_store_peak = 0;
+    double ray_store_mean = 0;  ///< over all cells and the trace phase
+    struct BufferUse {
+        std::string name;
+        int peak = 0;
+        double mean = 0;  ///< messages per buffer, over the buffers of the class and all cycles
+    };
+    std::vector<BufferUse> buffers;
+    std::vector<std::string> report;  ///< what was stuck where, oldest first
+    std::uint64_t schedule_hash = 0;
+    double wall_load = 0;  ///< seconds
+    double wall_precast = 0;
+    double wall_trace = 0;
+};
+
+/// Progress of a run, for people.
+struct RunProgress {
+    const char* phase;
+    Cycle cycle;
+    std::uint64_t done;  ///< cells loaded or pixels complete
+    std::uint64_t all;
+    std::uint64_t hops;
+};
+
+class Machine : public sc_core::sc_module {
+  public:
+    /// `tracer` may be null where nothing is handed to the exterior. All arguments must outlive the machine.
+    Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
+            const MachineSettings& machine, const ExteriorTracer* tracer);
+
+    /// Runs load, precast and trace to a verdict. Call once.
+    RunResult run(std::function<void(const RunProgress&)> progress = {});
+
+    Array& array() { return array_; }
+    Environment& environment() { return environment_; }
+
+    /// Cycles without any answer coming home after which postponing is called a livelock.
+    Cycle livelock_window() const;
+
+  private:
+    void bind_pipeline();
+    void run_phase(Phase phase, RunResult& result);
+    bool phase_complete(const RunResult& result) const;
+    void judge(RunResult& result);
+    void check_conservation(const RunResult& result) const;
+    void collect(RunResult& result) const;
+    void collect_buffers(RunResult& result) const;
+    std::vector<std::string> stuck_report() const;
+    static bool watch(void* self, Cycle now);
+    bool kick_finds_work();
+
+    Scheduler scheduler_;
+    Picture picture_;
+    Environment environment_;
+    Geometry geometry_;
+    Precomputation precomputation_;
+    Distribution distribution_;
+    Array array_;
+    std::unique_ptr<Exterior> exterior_;
+    Link to_precomputation_;
+    Link to_distribution_;
+    std::vector<std::unique_ptr<Link>> row_links_;
+    std::function<void(const RunProgress&)> progress_;
+    std::uint64_t watch_calls_ = 0;
+    bool livelock_ = false;
+};
+
+}  // namespace raycell

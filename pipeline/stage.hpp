@@ -1,0 +1,43 @@
+// What the stages before the array have in common: a process woken by the scheduler, a throughput, a utilisation.
+#pragma once
+
+#include <systemc>
+
+#include "cells/environment.hpp"
+#include "cells/link.hpp"
+
+namespace raycell {
+
+struct StageStatistics {
+    std::uint64_t items = 0;        ///< polygons, trapezes or spans put out
+    std::uint64_t busy_cycles = 0;  ///< at work; waiting for room downstream not included
+};
+
+class Stage : public sc_core::sc_module, public Client {
+  public:
+    SC_HAS_PROCESS(Stage);
+    Stage(sc_core::sc_module_name name, Environment& environment)
+        : sc_module(name), environment_(environment) {
+        SC_METHOD(run);
+        sensitive << wake_;
+        dont_initialize();
+    }
+    void activate() override { wake_.notify(); }
+    const StageStatistics& statistics() const { return statistics_; }
+
+  protected:
+    /// One cycle; returns the next one in which the stage wants to run of itself.
+    virtual Cycle step(Cycle now) = 0;
+    Environment& environment() { return environment_; }
+    StageStatistics statistics_;
+
+  private:
+    void run() {
+        const Cycle next = step(environment_.scheduler.now());
+        if (next != never) environment_.scheduler.wake(*this, next);
+    }
+    Environment& environment_;
+    sc_core::sc_event wake_;
+};
+
+}  // namespace raycell
