@@ -1,0 +1,59 @@
+// How the readers speak to the user: one error that ends the reading, and warnings that do not.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace raycell {
+
+/// The input can't be used. The message is "FILE:LINE: what; expected what", one line, without the input's
+/// raw bytes.
+struct InputError : std::runtime_error {
+    /// `line` counts from 1; 0 where the file as a whole is meant (then no line is printed).
+    InputError(const std::string& file, std::size_t line, const std::string& what,
+               const std::string& expected);
+};
+
+/// A word of the input, fit to be printed: at most `limit` characters, everything but printable ASCII
+/// escaped.
+std::string printable(std::string_view word, std::size_t limit = 40);
+
+/// Collects warnings. Each kind is spelt out a few times and counted from then on, so that a file with a
+/// million faults gives a handful of lines.
+class Diagnostics {
+  public:
+    static constexpr std::size_t shown_of_a_kind = 5;
+
+    /// `kind` groups warnings; of each at most `shown` are kept, the last with the number of those left out.
+    void warn(const std::string& file, std::size_t line, const std::string& kind, const std::string& text,
+              std::size_t shown = shown_of_a_kind);
+
+    /// Something worth knowing that is no fault: "FILE: note: ...".
+    void note(const std::string& file, const std::string& text);
+
+    /// "FILE:LINE: warning: ..." in order of appearance; meant for standard error.
+    std::vector<std::string> messages() const;
+
+    /// Number of warnings, those left out of messages() included, notes not.
+    std::size_t warning_count() const { return warnings_; }
+
+    /// Number of warnings of one kind.
+    std::size_t count_of(const std::string& kind) const;
+
+  private:
+    struct Kind {
+        std::size_t count = 0;
+        std::size_t last_line = 0;
+        std::size_t last_shown = 0;  ///< index into messages_
+        std::size_t shown = 0;
+    };
+    std::vector<std::string> messages_;
+    std::map<std::string, Kind> kinds_;
+    std::size_t warnings_ = 0;
+};
+
+}  // namespace raycell

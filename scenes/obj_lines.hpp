@@ -1,0 +1,53 @@
+// What stands between an OBJ or MTL file and tinyobjloader: it neither joins continued lines, nor reports a
+// malformed number, nor knows line numbers. So it is fed with one checked line at a time.
+#pragma once
+
+#include <cstddef>
+#include <streambuf>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenes/text_source.hpp"
+
+namespace raycell {
+
+/// Logical lines: a backslash at the end of a line joins it to the next, except in comments.
+class LineReader {
+  public:
+    static constexpr std::size_t max_length = 4 * 1024 * 1024;  ///< characters of a logical line
+
+    explicit LineReader(TextSource source);
+
+    /// Reads the next line, without comment and white space at its ends. False at the end of the file.
+    /// Throws InputError as TextSource does, and for a line of more than max_length characters.
+    bool next(std::string& line);
+
+    /// Where the current line starts, from 1.
+    std::size_t line() const { return start_; }
+    const std::string& file() const { return source_.name(); }
+
+  private:
+    TextSource source_;
+    std::size_t start_ = 0;
+};
+
+/// Splits at spaces and tabs; the views point into `line`.
+std::vector<std::string_view> split(std::string_view line);
+
+/// The line without its first word.
+std::string_view rest_of(std::string_view line);
+
+/// A stream buffer that asks `next_line()` for text whenever a reader wants more; exceptions pass through.
+/// Since it holds one line at a time, whoever handles that line's content can ask where it stands.
+class LineFeed : public std::streambuf {
+  protected:
+    /// Puts the next checked line, with '\n', into `text`; false at the end.
+    virtual bool next_line(std::string& text) = 0;
+
+  private:
+    int_type underflow() override;
+    std::string text_;
+};
+
+}  // namespace raycell
