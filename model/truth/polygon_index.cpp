@@ -1,0 +1,270 @@
+#include "model/truth/polygon_index.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace raycell {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double coordinate_limit = 1e15;  ///< Embree ignores boxes beyond 1.8e18
+
+/// So many of the polygons that reach farthest may stand apart from Embree's tree.
+constexpr std::size_t most_apart = 16;
+
+/// The query that rides behind Embree's own context; Embree hands its address back to the callbacks.
+struct Query {
+    RTCIntersectContext context;  // first, so that a pointer to it is a pointer to the query
+    const ProbeRay& ray;
+    std::uint32_t exclude;
+    double t_max;      ///< the nearest hit so far, or the caller's limit
+    double start = 0;  ///< Embree's ray begins at ray.at(start)
+    std::size_t index = 0;
+    bool found = false;
+
+    Query(const ProbeRay& probe, std::uint32_t leaves, double limit)
+        : ray(probe), exclude(leaves), t_max(limit) {
+        rtcInitIntersectContext(&context);
+    }
+    static Query& of(RTCIntersectContext* context) { return *reinterpret_cast<Query*>(context); }
+
+    /// Takes the polygon if it is met and nothing before it; true if taken.
+    bool offer(const std::vector<Polygon>& polygons, std::size_t candidate) {
+        const Polygon& polygon = polygons[candidate];
+        if (polygon.id == exclude) return false;
+        const std::optional<double> t = ray.meet(polygon, nearest_hit, t_max);
+        if (!t || (found && *t == t_max && polygon.id > polygons[index].id)) return false;
+        t_max = *t;
+        index = candidate;
+        found = true;
+        return true;
+    }
+};
+
+float float_above(double value) {
+    const float nearest = static_cast<float>(value);
+    return std::nextafter(nearest, std::numeric_limits<float>::infinity());
+}
+
+Box bounds_of(const Polygon& polygon) {
+    Box box{dvec3(infinity), dvec3(-infinity)};
+    for (const dvec3& vertex : polygon.vertices) {
+        box.low = glm::min(box.low, vertex);
+        box.high = glm::max(box.high, vertex);
+    }
+    return box;
+}
+
+double reach_of(const Box& box) {
+    const dvec3 reach = glm::max(glm::abs(box.low), glm::abs(box.high));
+    return std::max({reach.x, reach.y, reach.z});
+}
+
+void check(const Polygon& polygon) {
+    const auto reject = [&](const char* why) {
+        throw std::invalid_argument("polygon " + std::to_string(polygon.id) + " " + why);
+    };
+    if (polygon.vertices.size() < 3) reject("has fewer than 3 vertices");
+    for (const dvec3& vertex : polygon.vertices)
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(std::abs(vertex[axis]) <= coordinate_limit))
+                reject("has a vertex that is not finite or lies beyond 1e15 cells");
+}
+
+/// Part of the ray inside a box, as an interval of t; empty if low > high.
+struct Interval {
+    double low;
+    double high;
+};
+Interval clip_ray(const ProbeRay& ray, const Box& box, double t_max) {
+    Interval inside{0, t_max};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double from = ray.origin()[axis];
+        const double step = ray.direction()[axis];
+        if (step == 0) {
+            if (from < box.low[axis] || from > box.high[axis]) return {1, 0};
+            continue;
+        }
+        const double a = (box.low[axis] - from) / step;
+        const double b = (box.high[axis] - from) / step;
+        inside.low = std::max(inside.low, std::min(a, b));
+        inside.high = std::min(inside.high, std::max(a, b));
+    }
+    return inside;
+}
+
+}  // namespace
+
+struct PolygonIndex::Tree {
+    const std::vector<Polygon>& polygons;
+    std::vector<std::size_t> apart;                 ///< polygons tried for every ray
+    std::vector<std::size_t> members;               ///< polygons in Embree's tree, by its primitive ids
+    Box bounds{dvec3(infinity), dvec3(-infinity)};  ///< of the members, padded
+    double pad = 0;
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+
+    explicit Tree(const std::vector<Polygon>& all) : polygons(all) {}
+    ~Tree() {
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+
+    void divide();
+    void measure();
+    void build();
+    bool begin(RTCRay& ray, Query& query) const;
+
+    static const Tree& of(const void* user) { return *static_cast<const Tree*>(user); }
+    static void on_bounds(const RTCBoundsFunctionArguments* args);
+    static void on_intersect(const RTCIntersectFunctionNArguments* args);
+    static void on_occluded(const RTCOccludedFunctionNArguments* args);
+};
+
+void PolygonIndex::Tree::on_bounds(const RTCBoundsFunctionArguments* args) {
+    const Tree& tree = of(args->geometryUserPtr);
+    Box box = bounds_of(tree.polygons[tree.members[args->primID]]);
+    box.low -= tree.pad;
+    box.high += tree.pad;
+    *args->bounds_o = {float(box.low.x),  float(box.low.y),  float(box.low.z),  0,
+                       float(box.high.x), float(box.high.y), float(box.high.z), 0};
+}
+
+void PolygonIndex::Tree::on_intersect(const RTCIntersectFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    Query& query = Query::of(args->context);
+    const Tree& tree = of(args->geometryUserPtr);
+    if (!query.offer(tree.polygons, tree.members[args->primID])) return;
+    // Boxes are padded, so a box that begins beyond this holds nothing as near as the hit.
+    reinterpret_cast<RTCRayHit*>(args->rayhit)->ray.tfar = float_above(query.t_max - query.start);
+}
+
+void PolygonIndex::Tree::on_occluded(const RTCOccludedFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    const Tree& tree = of(args->geometryUserPtr);
+    if (!Query::of(args->context).offer(tree.polygons, tree.members[args->primID])) return;
+    // Embree's sign for "stop, something is in the way".
+    reinterpret_cast<RTCRay*>(args->ray)->tfar = -std::numeric_limits<float>::infinity();
+}
+
+/// Sets a few polygons apart that reach much farther than all others, as a floor to the horizon does: in the
+/// tree they would cost every other polygon its precision, and the padding would make the tree useless.
+void PolygonIndex::Tree::divide() {
+    std::vector<std::pair<double, std::size_t>> by_reach;
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+        check(polygons[i]);
+        by_reach.emplace_back(reach_of(bounds_of(polygons[i])), i);
+    }
+    const std::size_t most = std::min(most_apart, by_reach.size());
+    std::partial_sort(by_reach.begin(), by_reach.begin() + std::ptrdiff_t(most), by_reach.end(),
+                      [](const auto& a, const auto& b) { return a > b; });
+    double others = 0;
+    for (std::size_t i = most; i < by_reach.size(); ++i) others = std::max(others, by_reach[i].first);
+    for (std::size_t i = 0; i < by_reach.size(); ++i) {
+        const bool far = i < most && by_reach[i].first > 8 * others;
+        (far ? apart : members).push_back(by_reach[i].second);
+    }
+    std::sort(members.begin(), members.end());  // the order of the scene, which is one of neighbours
+}
+
+/// The padding covers, with a factor of 3 to spare, what single precision moves a point of the ray by: half a
+/// unit in the last place of the origin, and of the direction over the diagonal (both bounded by the box of
+/// the members, because a ray is handed to Embree only from where it enters that box).
+void PolygonIndex::Tree::measure() {
+    for (const std::size_t member : members) {
+        const Box box = bounds_of(polygons[member]);
+        bounds.low = glm::min(bounds.low, box.low);
+        bounds.high = glm::max(bounds.high, box.high);
+    }
+    pad = 1e-3 + 16 * reach_of(bounds) * std::ldexp(1.0, -24);
+    bounds.low -= pad;
+    bounds.high += pad;
+}
+
+void PolygonIndex::Tree::build() {
+    // One thread: many programs may run beside each other, and building takes about a microsecond per
+    // polygon.
+    device = rtcNewDevice("threads=1");
+    if (!device) throw std::runtime_error("Embree has no device for this processor");
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(members.size()));
+    rtcSetGeometryUserData(geometry, this);
+    rtcSetGeometryBoundsFunction(geometry, on_bounds, this);
+    rtcSetGeometryIntersectFunction(geometry, on_intersect);
+    rtcSetGeometryOccludedFunction(geometry, on_occluded);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+    const RTCError error = rtcGetDeviceError(device);
+    if (error != RTC_ERROR_NONE)
+        throw std::runtime_error("Embree can't build its tree over " + std::to_string(members.size()) +
+                                 " polygons (error " + std::to_string(int(error)) + ")");
+}
+
+/// Sets up Embree's ray from where the query's enters the tree, a pad earlier, so that rounding can't put the
+/// first polygon behind it. False: the ray passes the tree.
+bool PolygonIndex::Tree::begin(RTCRay& ray, Query& query) const {
+    if (!scene) return false;
+    const Interval inside = clip_ray(query.ray, bounds, query.t_max);
+    if (!(inside.low <= inside.high)) return false;
+    query.start = inside.low - pad;
+    const dvec3 origin = query.ray.at(query.start);
+    const dvec3& direction = query.ray.direction();
+    ray.org_x = float(origin.x);
+    ray.org_y = float(origin.y);
+    ray.org_z = float(origin.z);
+    ray.dir_x = float(direction.x);
+    ray.dir_y = float(direction.y);
+    ray.dir_z = float(direction.z);
+    ray.tnear = 0;
+    ray.tfar = float_above(inside.high - query.start + pad);
+    ray.time = 0;
+    ray.mask = ~0u;
+    ray.id = 0;
+    ray.flags = 0;
+    return true;
+}
+
+PolygonIndex::PolygonIndex(const std::vector<Polygon>& polygons) : tree_(std::make_unique<Tree>(polygons)) {
+    tree_->divide();
+    if (tree_->members.empty()) return;
+    tree_->measure();
+    tree_->build();
+}
+
+PolygonIndex::~PolygonIndex() = default;
+
+std::optional<PolygonIndex::Nearest> PolygonIndex::nearest(const ProbeRay& ray, std::uint32_t exclude,
+                                                           double t_max) const {
+    Query query(ray, exclude, t_max);
+    for (const std::size_t polygon : tree_->apart) query.offer(tree_->polygons, polygon);
+    RTCRayHit embree_ray;
+    if (tree_->begin(embree_ray.ray, query)) {
+        embree_ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        embree_ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(tree_->scene, &query.context, &embree_ray);
+    }
+    if (!query.found) return std::nullopt;
+    return Nearest{query.t_max, query.index};
+}
+
+bool PolygonIndex::any(const ProbeRay& ray, std::uint32_t exclude, double t_max) const {
+    Query query(ray, exclude, t_max);
+    for (const std::size_t polygon : tree_->apart)
+        if (query.offer(tree_->polygons, polygon)) return true;
+    RTCRay embree_ray;
+    if (tree_->begin(embree_ray, query)) rtcOccluded1(tree_->scene, &query.context, &embree_ray);
+    return query.found;
+}
+
+}  // namespace raycell

@@ -1,0 +1,171 @@
+#include "model/truth/truth.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "model/truth/rows.hpp"
+
+namespace raycell {
+
+TruthCounts& operator+=(TruthCounts& sum, const TruthCounts& more) {
+    sum.eye += more.eye;
+    sum.eye_hits += more.eye_hits;
+    sum.reflected += more.reflected;
+    sum.refracted += more.refracted;
+    sum.shadow += more.shadow;
+    return sum;
+}
+
+/// One tree of rays: what all its rays share.
+struct TruthRenderer::Tracer {
+    const TruthRenderer& truth;
+    TruthSettings limits;
+    TruthCounts counts;
+
+    Tracer(const TruthRenderer& renderer, const TruthSettings& settings)
+        : truth(renderer), limits(settings) {}
+
+    /// A ray's place in its tree.
+    struct Rank {
+        int generation;
+        double weight;
+    };
+
+    dvec3 trace(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, Rank rank);
+    dvec3 shade(const ShadePoint& point, const Polygon& polygon, Rank rank);
+    std::uint64_t lit_sources(const ShadePoint& point, std::uint32_t polygon);
+    bool sends(double share, Rank rank) const {
+        return share > 0 && rank.generation < limits.max_depth && rank.weight * share >= limits.min_weight;
+    }
+    ShadePoint point_at(const TruthHit& hit, const dvec3& direction) const;
+    void primary(double x, double y, Pixel& pixel);
+};
+
+ShadePoint TruthRenderer::Tracer::point_at(const TruthHit& hit, const dvec3& direction) const {
+    const Polygon& polygon = truth.scene_.polygons[hit.index];
+    const dvec3 normal = polygon.normal.at(project(hit.position, polygon.drop));
+    return shade_point(hit.position, direction, normal, polygon.plane.n);
+}
+
+/// One bit per source that the normal faces and nothing hides.
+std::uint64_t TruthRenderer::Tracer::lit_sources(const ShadePoint& point, std::uint32_t polygon) {
+    const std::vector<Source>& sources = truth.scene_.sources;
+    std::uint64_t lit = 0;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const SourceView view = view_source(point, sources[i]);
+        if (!view.faces()) continue;
+        ++counts.shadow;
+        if (!truth.occluded(point.position, view.direction, polygon, view.distance))
+            lit |= std::uint64_t(1) << i;
+    }
+    return lit;
+}
+
+dvec3 TruthRenderer::Tracer::shade(const ShadePoint& point, const Polygon& polygon, Rank rank) {
+    const CellScene& scene = truth.scene_;
+    const Material& material = scene.objects[polygon.object];
+    const dvec3 local = local_intensity(point, material, scene.sources.data(), scene.sources.size(),
+                                        lit_sources(point, polygon.id));
+    dvec3 reflected(0), refracted(0);
+    const double mirrored = mirror_share(material);
+    if (sends(mirrored, rank)) {
+        ++counts.reflected;
+        reflected = trace(point.position, reflect_direction(point), polygon.id,
+                          {rank.generation + 1, rank.weight * mirrored});
+    }
+    const double transmitted = transmit_share(material);
+    dvec3 onward;
+    if (sends(transmitted, rank) && refract_direction(point, material.ior, onward)) {
+        ++counts.refracted;
+        refracted =
+            trace(point.position, onward, polygon.id, {rank.generation + 1, rank.weight * transmitted});
+    }
+    return combine_intensity(local, material, reflected, refracted);
+}
+
+dvec3 TruthRenderer::Tracer::trace(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
+                                   Rank rank) {
+    const std::optional<TruthHit> hit = truth.intersect(origin, direction, exclude);
+    if (!hit) return truth.scene_.background;
+    return shade(point_at(*hit, direction), truth.scene_.polygons[hit->index], rank);
+}
+
+/// Fills a pixel from the primary ray through (x, y) cells.
+void TruthRenderer::Tracer::primary(double x, double y, Pixel& pixel) {
+    const Frame::PrimaryRay ray = truth.scene_.frame.primary_ray(x, y);
+    ++counts.eye;
+    const std::optional<TruthHit> hit = truth.intersect(ray.origin, ray.direction, no_polygon);
+    if (!hit) {
+        pixel.colour = truth.scene_.background;
+        pixel.depth = std::numeric_limits<double>::infinity();
+        return;
+    }
+    ++counts.eye_hits;
+    const ShadePoint point = point_at(*hit, ray.direction);
+    pixel.depth = hit->position.z;
+    pixel.normal = point.normal;
+    pixel.polygon = hit->polygon;
+    pixel.colour = shade(point, truth.scene_.polygons[hit->index], {0, 1.0});
+}
+
+TruthRenderer::TruthRenderer(const CellScene& scene, const TruthSettings& settings)
+    : scene_(scene), settings_(settings), index_(scene.polygons) {
+    if (settings.max_depth < 0) throw std::invalid_argument("max_depth is negative");
+    if (scene.sources.size() > max_sources)
+        throw std::invalid_argument(std::to_string(scene.sources.size()) + " sources, at most " +
+                                    std::to_string(max_sources) + " are allowed");
+    for (const Polygon& polygon : scene.polygons)
+        if (polygon.object >= scene.objects.size())
+            throw std::invalid_argument("polygon " + std::to_string(polygon.id) + " is of object " +
+                                        std::to_string(polygon.object) + ", but there are only " +
+                                        std::to_string(scene.objects.size()));
+}
+
+std::optional<TruthHit> TruthRenderer::intersect(const dvec3& origin, const dvec3& direction,
+                                                 std::uint32_t exclude, double t_max) const {
+    const ProbeRay ray(origin, direction);
+    const std::optional<PolygonIndex::Nearest> found = index_.nearest(ray, exclude, t_max);
+    if (!found) return std::nullopt;
+    return TruthHit{found->t, scene_.polygons[found->index].id, found->index, ray.at(found->t)};
+}
+
+bool TruthRenderer::occluded(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
+                             double t_max) const {
+    return index_.any(ProbeRay(origin, direction), exclude, t_max - nearest_hit);
+}
+
+dvec3 TruthRenderer::radiance(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
+                              int generation, double weight, TruthCounts* counts) const {
+    Tracer tracer(*this, settings_);
+    const dvec3 intensity = tracer.trace(origin, direction, exclude, {generation, weight});
+    if (counts) *counts += tracer.counts;
+    return intensity;
+}
+
+Picture TruthRenderer::render(int threads, const Progress& progress) const {
+    Picture picture(scene_.frame.width, scene_.frame.height);
+    for_each_row(picture.height, threads, progress, [&](int y) {
+        Tracer tracer(*this, settings_);
+        for (int x = 0; x < picture.width; ++x) tracer.primary(x + 0.5, y + 0.5, picture.at(x, y));
+    });
+    return picture;
+}
+
+TruthCounts TruthRenderer::count(int n, int threads, const Progress& progress) const {
+    if (n < 2) throw std::invalid_argument("rays are counted on a grid of at least 2 by 2");
+    // The field of view ends at the centres of the outermost cells (nff.md: `angle`).
+    const double step_x = (scene_.frame.width - 1.0) / (n - 1);
+    const double step_y = (scene_.frame.height - 1.0) / (n - 1);
+    std::vector<TruthCounts> rows(static_cast<std::size_t>(n));
+    for_each_row(n, threads, progress, [&](int y) {
+        Tracer tracer(*this, {4, 0.0});
+        Pixel unused;
+        for (int x = 0; x < n; ++x) tracer.primary(0.5 + x * step_x, 0.5 + y * step_y, unused);
+        rows[static_cast<std::size_t>(y)] = tracer.counts;
+    });
+    TruthCounts sum;
+    for (const TruthCounts& row : rows) sum += row;
+    return sum;
+}
+
+}  // namespace raycell

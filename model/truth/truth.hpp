@@ -1,0 +1,87 @@
+// The truth: the same scene, camera and shading model, rendered classically on the exact polygons.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "model/picture.hpp"
+#include "model/placement.hpp"
+#include "model/shading.hpp"
+#include "model/truth/polygon_index.hpp"
+
+namespace raycell {
+
+/// Where a tree of rays ends.
+struct TruthSettings {
+    int max_depth = 4;              ///< generations after the primary ray, >= 0
+    double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut
+};
+
+struct TruthHit {
+    double t = 0;                        ///< distance from the ray's origin, cell widths
+    std::uint32_t polygon = no_polygon;  ///< its id
+    std::size_t index = 0;               ///< its place in CellScene::polygons
+    dvec3 position{0, 0, 0};             ///< cell coordinates
+};
+
+/// Rays sent, in the terms of the Standard Procedural Databases (Haines 1987).
+struct TruthCounts {
+    std::uint64_t eye = 0;       ///< primary rays
+    std::uint64_t eye_hits = 0;  ///< of them, those that hit anything
+    std::uint64_t reflected = 0;
+    std::uint64_t refracted = 0;
+    std::uint64_t shadow = 0;  ///< to sources that the normal faces; to others none is sent
+};
+TruthCounts& operator+=(TruthCounts& sum, const TruthCounts& more);
+
+/// Whitted's ray tracer over the whole, unclipped scene (design, section 7). All methods are const and
+/// thread-safe; directions are unit, coordinates those of cells.
+///
+/// A ray never hits the polygon that it leaves (`exclude`, no_polygon for none), and nothing nearer than
+/// `nearest_hit` (1e-9); so it starts exactly at the hit point, without an offset.
+class TruthRenderer {
+  public:
+    /// Called with rows done and rows in all; never by two threads at once.
+    using Progress = std::function<void(int, int)>;
+
+    /// Keeps a reference: the scene must outlive the renderer and stay unchanged.
+    /// Throws std::invalid_argument for what PolygonIndex rejects, an object that doesn't exist, more than
+    /// max_sources sources, or a negative max_depth.
+    explicit TruthRenderer(const CellScene& scene, const TruthSettings& settings = {});
+    explicit TruthRenderer(const CellScene&&, const TruthSettings& = {}) = delete;
+
+    /// The first polygon with nearest_hit < t <= t_max; equal t: the lower id.
+    std::optional<TruthHit> intersect(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
+                                      double t_max = std::numeric_limits<double>::infinity()) const;
+
+    /// Whether any polygon, transparent or not, lies between the origin and t_max. Both ends are kept clear
+    /// by nearest_hit: a polygon through the source itself does not darken it.
+    bool occluded(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, double t_max) const;
+
+    /// Intensity that a ray brings back. `generation` is 0 for a primary ray, `weight` the product of the
+    /// shares on the way to it. Adds the rays that it sends, not itself, to `counts` if given.
+    dvec3 radiance(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, int generation,
+                   double weight, TruthCounts* counts = nullptr) const;
+
+    /// One primary ray through every pixel's centre. cycle and hops stay 0. The picture is the same, bit for
+    /// bit, for any number of threads (0: as many as the processor has).
+    Picture render(int threads = 0, const Progress& progress = {}) const;
+
+    /// Counts the rays of an n × n picture by the rules of the Standard Procedural Databases: rays from edge
+    /// to edge of the field of view (n = 513 for a resolution of 512: the pixels' corners), trees of depth 5
+    /// with the primary ray as 1, no cut by weight. Throws std::invalid_argument if n < 2.
+    TruthCounts count(int n, int threads = 0, const Progress& progress = {}) const;
+
+  private:
+    struct Tracer;
+
+    const CellScene& scene_;
+    TruthSettings settings_;
+    PolygonIndex index_;
+};
+
+}  // namespace raycell

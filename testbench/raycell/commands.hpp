@@ -1,0 +1,23 @@
+// The subcommands of raycell. Each adds itself to the program and returns what main() exits with.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace raycell {
+
+/// Exit codes (design, section 10).
+enum ExitCode { exit_done = 0, exit_usage = 1, exit_comparison = 2, exit_stuck = 3, exit_limit = 4 };
+
+struct Command {
+    CLI::App* app;
+    std::function<int()> run;
+};
+
+Command add_render_command(CLI::App& program);
+Command add_truth_command(CLI::App& program);
+Command add_compare_command(CLI::App& program);
+
+}  // namespace raycell

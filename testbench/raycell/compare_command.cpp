@@ -1,0 +1,63 @@
+// raycell compare: how far a picture is from another, as text or JSON, and the picture of the difference.
+#include <cstdio>
+#include <iostream>
+
+#include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/options.hpp"
+#include "testbench/raycell/picture_file.hpp"
+#include "testbench/raycell/report_json.hpp"
+
+namespace raycell {
+namespace {
+
+struct CompareOptions {
+    std::string test;
+    std::string truth;
+    std::string difference;
+    double gain = 8;
+    double least_psnr = 0;
+    double most_wrong_hits = 100;
+    bool json = false;
+};
+
+bool is_png(const std::string& path) { return path.size() > 4 && path.substr(path.size() - 4) == ".png"; }
+
+int run(const CompareOptions& options) {
+    const auto read = [](const std::string& path) { return is_png(path) ? read_png(path) : read_exr(path); };
+    const Picture test = read(options.test);
+    const Picture truth = read(options.truth);
+    const Accuracy accuracy = compare(test, truth);
+    if (!options.difference.empty()) write_png(difference(test, truth, options.gain), options.difference);
+    if (options.json) {
+        std::cout << report(accuracy).dump(2) << '\n';
+    } else {
+        std::printf("PSNR                        %8.2f dB\n", accuracy.psnr_db);
+        std::printf("RMSE                        %8.5f\n", accuracy.rmse);
+        std::printf("largest error               %8.5f\n", accuracy.max_error);
+        std::printf("pixels off by over 1/255    %8.3f %%\n", accuracy.off_by_1_255_percent);
+        std::printf("pixels off by over 0.1      %8.3f %%\n", accuracy.off_by_0_1_percent);
+        std::printf("pixels that hit elsewhere   %8.3f %%\n", accuracy.wrong_hit_percent);
+    }
+    const bool passed =
+        accuracy.psnr_db >= options.least_psnr && accuracy.wrong_hit_percent <= options.most_wrong_hits;
+    return passed ? exit_done : exit_comparison;
+}
+
+}  // namespace
+
+Command add_compare_command(CLI::App& program) {
+    auto options = std::make_shared<CompareOptions>();
+    CLI::App* app = program.add_subcommand("compare", "Compares two pictures, .exr or .png; exit code 2 if they "
+                                                      "differ by more than was allowed");
+    app->add_option("picture", options->test, "the picture in question")->required()->type_name("FILE");
+    app->add_option("truth", options->truth, "what it is compared with")->required()->type_name("FILE");
+    app->add_option("-o,--output", options->difference, "write the difference as PNG")->type_name("FILE");
+    OptionTable table(*app);
+    table.number("gain", options->gain, 0.0, 1000.0, "the difference is multiplied by this in the PNG");
+    table.number("psnr", options->least_psnr, 0.0, 200.0, "least PSNR that passes, dB");
+    table.number("wrong-hits", options->most_wrong_hits, 0.0, 100.0, "most pixels with another first hit, percent");
+    table.flag("json", options->json, "print JSON");
+    return {app, [options] { return run(*options); }};
+}
+
+}  // namespace raycell

@@ -1,0 +1,178 @@
+#include "testbench/raycell/options.hpp"
+
+#include <cstdio>
+#include <fstream>
+
+namespace raycell {
+
+void OptionTable::text(const std::string& name, std::string& target, const std::string& type,
+                       const std::string& help) {
+    const std::string flags = name == "scene" ? "scene,--scene" : name == "output" ? "-o,--output" : "--" + name;
+    app_.add_option(flags, target, help)->type_name(type)->capture_default_str()->take_last();
+    entries_.push_back({name, [&target] { return nlohmann::ordered_json(target); }});
+}
+
+void OptionTable::flag(const std::string& name, bool& target, const std::string& help) {
+    app_.add_flag("--" + name, target, help)->take_last();
+    entries_.push_back({name, [&target] { return nlohmann::ordered_json(target); }});
+}
+
+void OptionTable::size(const std::string& name, int& width, int& height, const std::string& help) {
+    const auto parse = [](const std::string& word, int& w, int& h) {
+        char x = 0;
+        char rest = 0;
+        return std::sscanf(word.c_str(), "%d%c%d%c", &w, &x, &h, &rest) == 3 && x == 'x' && w >= 1 && h >= 1 &&
+               w <= 4096 && h <= 4096;
+    };
+    const auto check = [parse](const std::string& word) -> std::string {
+        int w = 0;
+        int h = 0;
+        return parse(word, w, h) ? "" : "expected WxH from 1x1 to 4096x4096, not '" + word + "'";
+    };
+    const auto set = [parse, &width, &height](const std::string& word) { parse(word, width, height); };
+    app_.add_option_function<std::string>("--" + name, set, help)
+        ->check(CLI::Validator(check, "WxH"))
+        ->default_str(std::to_string(width) + "x" + std::to_string(height))
+        ->take_last();
+    entries_.push_back({name, [&width, &height] {
+                            return nlohmann::ordered_json(std::to_string(width) + "x" + std::to_string(height));
+                        }});
+}
+
+void OptionTable::costs(CostTable& table) {
+    std::string names;
+    for (const auto& [name, member] : CostTable::entries()) {
+        names += (names.empty() ? "" : ", ") + name + "=" + std::to_string(table.*member);
+    }
+    const auto set = [&table](const std::vector<std::string>& words) {
+        for (const std::string& word : words) table.set(word);
+    };
+    const auto check = [](const std::string& word) -> std::string {
+        try {
+            CostTable().set(word);
+            return "";
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+    };
+    app_.add_option_function<std::vector<std::string>>("--cost", set,
+                                                       "cycles of an operation; may come several times. " + names)
+        ->check(CLI::Validator(check, "NAME=CYCLES"));
+    entries_.push_back({"cost", [&table] {
+                            nlohmann::ordered_json list = nlohmann::ordered_json::array();
+                            for (const auto& [name, member] : CostTable::entries()) {
+                                list.push_back(name + "=" + std::to_string(table.*member));
+                            }
+                            return list;
+                        }});
+}
+
+nlohmann::ordered_json OptionTable::values() const {
+    nlohmann::ordered_json all;
+    for (const Entry& entry : entries_) all[entry.name] = entry.value();
+    return all;
+}
+
+std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app) {
+    std::ifstream file(path);
+    if (!file) throw UsageError(path + ": can't be read; expected a configuration file");
+    std::vector<CLI::ConfigItem> items;
+    try {
+        items = CLI::ConfigTOML().from_config(file);
+    } catch (const CLI::Error& error) {
+        throw UsageError(path + ": " + error.what());
+    }
+    std::vector<std::string> arguments;
+    for (const CLI::ConfigItem& item : items) {
+        if (item.name == "++" || item.name == "--") continue;  // the parser's marks for sections
+        const std::string key = item.fullname();
+        const std::string option = "--" + key;
+        const CLI::Option* known = app.get_option_no_throw(option);
+        if (!known || key == "config" || key == "help") {
+            throw UsageError(path + ": unknown key '" + key.substr(0, 40) + "'; keys are the options of '" +
+                             app.get_name() + "' without their dashes, see --help");
+        }
+        if (known->get_items_expected_max() == 0) {  // a flag
+            arguments.push_back(option + "=" + (item.inputs.empty() ? "true" : item.inputs.front()));
+            continue;
+        }
+        if (item.inputs.empty() || (item.inputs.size() == 1 && item.inputs.front().empty())) continue;
+        for (const std::string& input : item.inputs) arguments.push_back(option + "=" + input);
+    }
+    return arguments;
+}
+
+std::string to_toml(const nlohmann::ordered_json& values) {
+    std::string text;
+    for (const auto& [key, value] : values.items()) text += key + " = " + value.dump() + "\n";
+    return text;
+}
+
+void add_scene_options(OptionTable& table, RenderOptions& options) {
+    PictureSettings& p = options.picture;
+    table.text("scene", options.scene, "FILE", "scene: .nff or .obj");
+    table.text("output", options.prefix, "PREFIX", "where results go: PREFIX.exr, PREFIX.png, PREFIX.json, ...");
+    table.text("view", options.view, "FILE.nff", "take background, view and sources from this file");
+    table.choice("viewer", p.viewer, {{"scene", ViewerMode::scene}, {"infinity", ViewerMode::infinity}},
+                 "viewer at the scene's distance, or at infinity (axial primary rays)");
+    table.size("cells", p.width, p.height, "size of the array, one cell per pixel");
+    table.number("chord-error", p.chord_error, 1e-3, 1e3,
+                 "largest gap between a curved object and its polygons, cells");
+    table.number("max-depth", p.max_depth, 0, 62, "generations of rays after the primary one");
+    table.number("min-weight", p.min_weight, 0.0, 1.0, "share of a pixel below which a ray is not sent");
+    table.flag("quiet", options.quiet, "no progress, no summary");
+}
+
+void add_machine_options(OptionTable& table, RenderOptions& options) {
+    PictureSettings& p = options.picture;
+    MachineSettings& m = options.machine;
+    table.number("depth", p.depth_levels, 1, 65536, "depth levels of the cube");
+    table.choice("stage", p.stage, {{"trace", RunStage::trace}, {"load", RunStage::load}},
+                 "trace rays, or stop after loading and show the nearest voxels");
+    table.choice("display", p.display, {{"phong", Display::phong}, {"gouraud", Display::gouraud}},
+                 "shading of --stage load");
+    table.choice("engine", options.engine, {{"timed", Engine::timed}, {"untimed", Engine::untimed}},
+                 "SystemC cells, or the recursive reference without time");
+    table.choice("hit", p.hit,
+                 {{"edge", HitTest::edge},
+                  {"mask", HitTest::mask},
+                  {"plane", HitTest::plane},
+                  {"interval", HitTest::interval},
+                  {"depth", HitTest::depth}},
+                 "what a cell compares a ray with");
+    table.choice("normals", p.normals, {{"linear", Normals::linear}, {"voxel", Normals::voxel}},
+                 "normals interpolated at the hit, or one per voxel");
+    table.choice("shadows", p.shadows,
+                 {{"per-hit", Shadows::per_hit}, {"precast", Shadows::precast}, {"memo", Shadows::memo}},
+                 "a ray per hit and source; a bit per voxel and source before tracing; the same when first hit");
+    table.choice("exterior", p.exterior, {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},
+                 "rays that leave the cube: traced on by the exterior processors, or lost");
+    static int exact = 0;  // the only arithmetic so far; named so that configurations say what they ran with
+    table.choice("arithmetic", exact, {{"exact", 0}}, "numbers of the cell: double precision");
+    table.number("word-bits", m.word_bits, 8, 32, "bits of a word in messages and voxels, for link cycles and storage");
+    table.number("ray-store", m.ray_store, 1, 1024, "M, rays that a cell can store, slots");
+    table.number("buffer", m.buffer_depth, 1, 1024, "depth of every buffer, messages");
+    table.choice("networks", m.networks,
+                 {{"half", Networks::half},
+                  {"quadrant", Networks::quadrant},
+                  {"split", Networks::split},
+                  {"shared", Networks::shared}},
+                 "which messages share a buffer");
+    table.choice("recovery", m.recovery, {{"postpone", Recovery::postpone}, {"none", Recovery::none}},
+                 "a ray that finds no slot: destroyed and sent again, or left waiting");
+    table.choice("slots", m.slots, {{"reserved", Slots::reserved}, {"free", Slots::free}},
+                 "slots kept by generation, or free for all");
+    table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
+    table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
+    table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62, "stop after so many; 0: never");
+    table.number("voxel-capacity", p.voxel_capacity, 0, 1000000, "voxels that a cell can hold; 0: unlimited");
+    table.number("normal-offset", p.normal_offset, 0.0, 1.0, "start of secondary rays off their polygon, cells");
+    table.number("exterior-processors", m.exterior_processors, 1, 1000000, "processors outside the cube");
+    table.number("exterior-latency", m.exterior_latency, 1, 1000000000, "cycles that one of them takes for a ray");
+    table.number("seed", m.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1, "of the back-off's jitter");
+    table.costs(m.costs);
+    table.flag("truth", options.truth, "render the truth too and report the accuracy");
+    table.flag("clip-truth", options.clip_truth, "clip the truth to the cube");
+}
+
+}  // namespace raycell

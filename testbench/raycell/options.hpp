@@ -1,0 +1,124 @@
+// The options of the programs: one table that makes --help, the configuration file and the JSON's config block.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/settings.hpp"
+
+namespace raycell {
+
+/// A wrong word on the command line or in a configuration file.
+struct UsageError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Registers options with CLI11 and remembers how to read their effective values back.
+class OptionTable {
+  public:
+    explicit OptionTable(CLI::App& app) : app_(app) {}
+
+    /// A whole or real number from least to most.
+    template <typename T>
+    void number(const std::string& name, T& target, T least, T most, const std::string& help);
+    void text(const std::string& name, std::string& target, const std::string& type, const std::string& help);
+    void flag(const std::string& name, bool& target, const std::string& help);
+    template <typename E>
+    void choice(const std::string& name, E& target, std::vector<std::pair<std::string, E>> values,
+                const std::string& help);
+    /// --cells WxH
+    void size(const std::string& name, int& width, int& height, const std::string& help);
+    /// --cost NAME=CYCLES, may come several times
+    void costs(CostTable& table);
+
+    /// Every option with its effective value.
+    nlohmann::ordered_json values() const;
+
+  private:
+    struct Entry {
+        std::string name;
+        std::function<nlohmann::ordered_json()> value;
+    };
+    CLI::App& app_;
+    std::vector<Entry> entries_;
+};
+
+/// Turns a configuration file (TOML: key = value, keys are the options' names) into arguments for `app`.
+/// Throws UsageError naming file and key for keys that the command doesn't know.
+std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app);
+
+/// The effective options as a configuration file that reproduces the run.
+std::string to_toml(const nlohmann::ordered_json& values);
+
+struct RenderOptions {
+    std::string scene;
+    std::string prefix = "out";
+    std::string view;
+    PictureSettings picture;
+    MachineSettings machine;
+    Engine engine = Engine::timed;
+    bool quiet = false;
+    bool truth = false;
+    bool clip_truth = false;
+};
+
+/// The options that render and truth share: scene, view, size, ray tree.
+void add_scene_options(OptionTable& table, RenderOptions& options);
+/// The rest of render's.
+void add_machine_options(OptionTable& table, RenderOptions& options);
+
+template <typename T>
+void OptionTable::number(const std::string& name, T& target, T least, T most, const std::string& help) {
+    const auto in_range = [least, most, name](const std::string& word) -> std::string {
+        T value{};
+        // Written so that NaN fails too.
+        if (!CLI::detail::lexical_cast(word, value) || !(value >= least && value <= most)) {
+            std::ostringstream text;
+            text << "expected a number from " << least << " to " << most << ", not '" << word << "'";
+            return text.str();
+        }
+        return "";
+    };
+    std::ostringstream range;
+    range << least << ".." << most;
+    app_.add_option("--" + name, target, help)
+        ->check(CLI::Validator(in_range, range.str()))
+        ->capture_default_str()
+        ->take_last();
+    entries_.push_back({name, [&target] { return nlohmann::ordered_json(target); }});
+}
+
+template <typename E>
+void OptionTable::choice(const std::string& name, E& target, std::vector<std::pair<std::string, E>> values,
+                         const std::string& help) {
+    const auto name_of_value = [values](E value) {
+        for (const auto& [word, v] : values) {
+            if (v == value) return word;
+        }
+        return std::string();
+    };
+    std::string words;
+    for (const auto& entry : values) words += (words.empty() ? "" : "|") + entry.first;
+    const auto set = [&target, values](const std::string& word) {
+        for (const auto& [known, value] : values) {
+            if (known == word) target = value;
+        }
+    };
+    const auto known = [values, words](const std::string& word) -> std::string {
+        for (const auto& entry : values) {
+            if (entry.first == word) return "";
+        }
+        return "expected one of " + words + ", not '" + word + "'";
+    };
+    app_.add_option_function<std::string>("--" + name, set, help)
+        ->check(CLI::Validator(known, words))
+        ->default_str(name_of_value(target))
+        ->take_last();
+    entries_.push_back({name, [&target, name_of_value] { return nlohmann::ordered_json(name_of_value(target)); }});
+}
+
+}  // namespace raycell

@@ -1,0 +1,275 @@
+// raycell render: the scene through the simulated machine, and its results as files.
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+
+#include "model/truth/clip.hpp"
+#include "model/truth/exterior.hpp"
+#include "model/truth/truth.hpp"
+#include "model/untimed.hpp"
+#include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/picture_file.hpp"
+#include "testbench/raycell/report_json.hpp"
+#include "testbench/raycell/scene_input.hpp"
+
+namespace raycell {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::uint64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;
+}
+
+std::uint64_t memory_bytes() {
+    std::uint64_t pages = 0;
+    std::uint64_t resident = 0;
+    std::ifstream("/proc/self/statm") >> pages >> resident;
+    return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
+}
+
+/// A machine that can't be held in memory is refused before it is built.
+void check_memory(const RenderOptions& options) {
+    constexpr double bytes_per_cell_module = 10e3;
+    constexpr double bytes_per_untimed_cell = 200;
+    const double each = options.engine == Engine::timed ? bytes_per_cell_module : bytes_per_untimed_cell;
+    const double needed = each * options.picture.width * options.picture.height;
+    const double there = double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    if (needed > there) {
+        throw UsageError("--cells: " + std::to_string(std::llround(needed / 1e9)) +
+                         " GB would be needed for so many cells, " + std::to_string(std::llround(there / 1e9)) +
+                         " GB are free; expected a smaller array");
+    }
+}
+
+void show_progress(const RunProgress& p) {
+    std::cerr << "\r" << p.phase << ": cycle " << p.cycle << ", " << p.done << " of " << p.all
+              << (std::string(p.phase) == "load" ? " cells loaded, " : " pixels done, ") << p.hops << " hops"
+              << std::flush;
+}
+
+struct Run {
+    RunResult result;
+    double wall_build = 0;
+    std::uint64_t bytes_per_cell = 0;
+    std::string cells_csv;
+};
+
+std::string cells_csv(Array& array, int width, int height, Cycle trace_cycles) {
+    std::string text = "x,y,voxels,edges,ray_store_peak,ray_buffers_peak,answer_buffers_peak,link_busy_cycles\n";
+    struct Row {
+        int rays = 0;
+        int answers = 0;
+        std::uint64_t busy = 0;
+    };
+    (void)trace_cycles;
+    // A link's buffers stand at the cell that it leads to.
+    std::vector<Row> rows(std::size_t(width) * std::size_t(height));
+    std::size_t i = 0;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            for (const Side side : {Side::east, Side::south, Side::west, Side::north}) {
+                const int to_x = x + step_x(side);
+                const int to_y = y + step_y(side);
+                if (to_x < 0 || to_x >= width || to_y < 0 || to_y >= height) continue;
+                const Link& link = *array.links()[i++];
+                Row& row = rows[std::size_t(to_y) * std::size_t(width) + std::size_t(to_x)];
+                for (int index = 0; index < link.classes(); ++index) {
+                    const bool answers = index + 1 == link.classes();
+                    int& peak = answers ? row.answers : row.rays;
+                    peak = std::max(peak, link.statistics(index).peak);
+                }
+                row.busy += link.busy_cycles();
+            }
+        }
+    }
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const Cell& cell = array.cell(x, y).cell();
+            const Row& row = rows[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+            for (const std::uint64_t value :
+                 {std::uint64_t(x), std::uint64_t(y), std::uint64_t(cell.store().voxels.size()),
+                  std::uint64_t(cell.store().edges.size()), std::uint64_t(cell.ray_store().peak()),
+                  std::uint64_t(row.rays), std::uint64_t(row.answers)}) {
+                text += std::to_string(value) + ",";
+            }
+            text += std::to_string(row.busy) + "\n";
+        }
+    }
+    return text;
+}
+
+Run run_timed(const RenderOptions& options, const CellScene& scene, const ExteriorTracer* tracer) {
+    Run run;
+    const auto start = Clock::now();
+    const std::uint64_t before = memory_bytes();
+    Machine machine("machine", scene, options.picture, options.machine, tracer);
+    const std::uint64_t cells = std::uint64_t(options.picture.width) * std::uint64_t(options.picture.height);
+    const std::uint64_t after = memory_bytes();
+    run.bytes_per_cell = after > before ? (after - before) / cells : 0;
+    run.wall_build = seconds_since(start);
+    const bool progress = shows_progress(options);
+    run.result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
+    if (progress) end_progress();
+    run.cells_csv =
+        cells_csv(machine.array(), options.picture.width, options.picture.height, run.result.trace_cycles);
+    return run;
+}
+
+Run run_untimed(const RenderOptions& options, const CellScene& scene, const ExteriorTracer* tracer) {
+    Run run;
+    const auto start = Clock::now();
+    const std::uint64_t before = memory_bytes();
+    UntimedMachine machine(scene, options.picture, tracer);
+    RunResult& result = run.result;
+    result.wall_load = seconds_since(start);
+    const bool progress = shows_progress(options);
+    const auto traced = Clock::now();
+    result.picture = machine.render([&](int row) {
+        if (progress) std::cerr << "\rrow " << row + 1 << " of " << options.picture.height << std::flush;
+    });
+    if (progress) end_progress();
+    result.wall_trace = seconds_since(traced);
+    const std::uint64_t after = memory_bytes();
+    run.bytes_per_cell = after > before ? (after - before) / machine.cells().size() : 0;
+    result.counters.rays = machine.rays();
+    result.geometry.items = machine.loaded().polygons;
+    result.precomputation.items = machine.loaded().trapezes;
+    result.distribution.items = machine.loaded().spans;
+    run.cells_csv = "x,y,voxels,edges\n";
+    std::size_t index = 0;
+    for (const CellStore& store : machine.cells()) {
+        result.voxels += store.voxels.size();
+        result.max_voxels = std::max(result.max_voxels, std::uint64_t(store.voxels.size()));
+        result.occupied_cells += !store.voxels.empty();
+        result.edges += store.edges.size();
+        result.overflowed += store.overflowed;
+        const auto width = std::size_t(options.picture.width);
+        run.cells_csv += std::to_string(index % width) + "," + std::to_string(index / width) + "," +
+                         std::to_string(store.voxels.size()) + "," + std::to_string(store.edges.size()) + "\n";
+        ++index;
+    }
+    if (result.overflowed > 0) result.verdict = Verdict::capacity;
+    return run;
+}
+
+Json model_report(const Run& run) {
+    const RunResult& r = run.result;
+    const double seconds = r.wall_load + r.wall_precast + r.wall_trace;
+    const double hops = double(r.counters.load_hops + r.counters.rays.ray_hops + r.counters.rays.return_hops);
+    return {{"wall_seconds",
+             {{"build", run.wall_build}, {"load", r.wall_load}, {"precast", r.wall_precast}, {"trace", r.wall_trace}}},
+            {"hops_per_second", seconds > 0 ? hops / seconds : 0.0},
+            {"peak_memory_bytes", peak_memory_bytes()},
+            {"bytes_per_cell", run.bytes_per_cell}};
+}
+
+/// Renders the truth beside the picture and reports how far apart they are.
+Json render_truth(const RenderOptions& options, const CellScene& scene, const Picture& picture) {
+    const CellScene clipped = options.clip_truth ? clip_scene(scene) : scene;
+    const TruthRenderer truth(clipped, {options.picture.max_depth, options.picture.min_weight});
+    const Picture exact = truth.render();
+    write_exr(exact, options.prefix + ".truth.exr");
+    write_png(exact, options.prefix + ".truth.png");
+    write_png(difference(picture, exact), options.prefix + ".difference.png");
+    return report(compare(picture, exact));
+}
+
+void summarise(const RenderOptions& options, const Json& json) {
+    const auto& cycles = json["cycles"];
+    std::cout << "verdict " << json["verdict"].get<std::string>() << "; cycles: load " << cycles["load"]
+              << ", precast " << cycles["precast"] << ", trace " << cycles["trace"] << "; "
+              << json["voxels"]["stored"] << " voxels\n";
+    if (json.contains("accuracy")) {
+        std::cout << "accuracy " << json["accuracy"]["psnr_db"].get<double>() << " dB, other first hit in "
+                  << json["accuracy"]["wrong_hit_percent"].get<double>() << " % of the pixels\n";
+    }
+    std::cout << "picture: " << options.prefix << ".png\n";
+}
+
+int exit_code(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::completed: return exit_done;
+        case Verdict::deadlock:
+        case Verdict::livelock: return exit_stuck;
+        case Verdict::cycle_limit:
+        case Verdict::capacity: return exit_limit;
+    }
+    return exit_usage;
+}
+
+void explain(const RunResult& result) {
+    if (result.verdict == Verdict::completed) return;
+    std::cerr << "raycell: verdict " << name_of(result.verdict);
+    if (result.verdict == Verdict::capacity) {
+        std::cerr << ": " << result.overflowed << " voxels did not fit (--voxel-capacity)";
+    }
+    std::cerr << '\n';
+    constexpr std::size_t shown = 10;
+    for (std::size_t i = 0; i < result.report.size() && i < shown; ++i) std::cerr << "  " << result.report[i] << '\n';
+    if (result.report.size() > shown) {
+        std::cerr << "  ... " << result.report.size() << " in all, see deadlock.report in the JSON\n";
+    }
+}
+
+int run(const RenderOptions& options, const OptionTable& table) {
+    check_output(options.prefix);
+    check_memory(options);
+    const auto start = Clock::now();
+    const CellScene scene = read_and_place(options);
+    const bool exterior =
+        options.picture.exterior == ExteriorMode::host && options.picture.stage == RunStage::trace;
+    std::unique_ptr<TruthRenderer> whole;
+    std::unique_ptr<ClassicalExterior> tracer;
+    if (exterior) {
+        whole = std::make_unique<TruthRenderer>(
+            scene, TruthSettings{options.picture.max_depth, options.picture.min_weight});
+        tracer = std::make_unique<ClassicalExterior>(scene, *whole);
+    }
+    const double wall_placing = seconds_since(start);
+    Run done = options.engine == Engine::timed ? run_timed(options, scene, tracer.get())
+                                               : run_untimed(options, scene, tracer.get());
+    done.wall_build += wall_placing;
+
+    const std::string& prefix = options.prefix;
+    const RunResult& result = done.result;
+    Json json = report(result, scene, options.picture, options.machine);
+    Json config = table.values();
+    if (options.truth) json["accuracy"] = render_truth(options, scene, result.picture);
+    json["config"] = config;
+    json["model"] = model_report(done);
+    write_exr(result.picture, prefix + ".exr");
+    write_png(result.picture, prefix + ".png");
+    write_text(prefix + ".cells.csv", done.cells_csv);
+    write_text(prefix + ".toml", to_toml(config));
+    write_text(prefix + ".json", json.dump(2) + "\n");
+    explain(result);
+    if (!options.quiet) summarise(options, json);
+    return exit_code(result.verdict);
+}
+
+}  // namespace
+
+Command add_render_command(CLI::App& program) {
+    auto options = std::make_shared<RenderOptions>();
+    CLI::App* app = program.add_subcommand("render", "Renders a scene with the simulated machine");
+    auto table = std::make_shared<OptionTable>(*app);
+    app->add_option("--config", "options from a file as a run writes it; the command line has precedence")
+        ->type_name("FILE");
+    add_scene_options(*table, *options);
+    add_machine_options(*table, *options);
+    return {app, [options, table] { return run(*options, *table); }};
+}
+
+}  // namespace raycell

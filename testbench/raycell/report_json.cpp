@@ -1,0 +1,108 @@
+#include "testbench/raycell/report_json.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+namespace raycell {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json stage(const StageStatistics& s, Cycle cycles) {
+    return {{"items", s.items},
+            {"busy_cycles", s.busy_cycles},
+            {"utilisation", cycles > 0 ? double(s.busy_cycles) / double(cycles) : 0.0}};
+}
+
+}  // namespace
+
+std::string hex(std::uint64_t value) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+    return text;
+}
+
+Json report(const RunResult& result, const CellScene& scene, const PictureSettings& picture,
+            const MachineSettings& machine) {
+    const Counters& c = result.counters;
+    const Cycle total = result.load_cycles + result.precast_cycles + result.trace_cycles;
+    const VoxelBits bits = voxel_bits(picture, machine.word_bits, scene.sources.size());
+    const double edges_each = result.voxels > 0 ? double(result.edges) / double(result.voxels) : 0;
+    Json json;
+    json["verdict"] = name_of(result.verdict);
+    json["cycles"] = {{"load", result.load_cycles},
+                      {"precast", result.precast_cycles},
+                      {"trace", result.trace_cycles},
+                      {"total", total}};
+    json["simulated_seconds"] = double(total) / (machine.clock_mhz * 1e6);
+    // The distribution stage has one distributor per row: its utilisation is their mean.
+    StageStatistics distributors = result.distribution;
+    json["stages"] = {{"geometry", stage(result.geometry, result.load_cycles)},
+                      {"precomputation", stage(result.precomputation, result.load_cycles)},
+                      {"distribution", stage(distributors, result.load_cycles * Cycle(picture.height))},
+                      {"exterior", stage(result.exterior, (result.precast_cycles + result.trace_cycles) *
+                                                              Cycle(machine.exterior_processors))}};
+    const double cell_cycles = double(result.precast_cycles + result.trace_cycles) * picture.width * picture.height;
+    json["units"] = {
+        {"traversal", {{"utilisation", cell_cycles > 0 ? double(c.traversal_cycles) / cell_cycles : 0.0}}},
+        {"shading", {{"utilisation", cell_cycles > 0 ? double(c.shading_cycles) / cell_cycles : 0.0}}}};
+    json["hops"] = {{"load", c.load_hops}, {"ray", c.rays.ray_hops}, {"return", c.rays.return_hops}};
+    json["rays"] = {{"primary", c.rays.primary},     {"reflected", c.rays.reflected},
+                    {"refracted", c.rays.refracted}, {"shadow", c.rays.shadow},
+                    {"precast", c.rays.precast},     {"lost", c.rays.lost},
+                    {"exterior", c.rays.exterior}};
+    json["messages"] = {{"rays", {{"sent", c.rays_sent}, {"answered", c.rays_answered},
+                                  {"silent", c.rays_silent}, {"destroyed", c.rays_destroyed}}},
+                        {"answers", {{"sent", c.answers_sent}, {"delivered", c.answers_delivered}}},
+                        {"load", {{"sent", c.loads_sent}, {"delivered", c.loads_delivered}}}};
+    json["voxels"] = {
+        {"stored", result.voxels},
+        {"max_per_cell", result.max_voxels},
+        {"mean_per_occupied_cell",
+         result.occupied_cells > 0 ? double(result.voxels) / double(result.occupied_cells) : 0.0},
+        {"occupied_cells", result.occupied_cells},
+        {"bits_each", bits.base + edges_each * bits.per_edge},
+        {"edges_each", edges_each},
+        {"overflowed", result.overflowed}};
+    json["ray_store"] = {
+        {"capacity", machine.ray_store}, {"peak", result.ray_store_peak}, {"mean", result.ray_store_mean}};
+    json["buffers"] = {{"depth", machine.buffer_depth}, {"peak", Json::object()}, {"mean", Json::object()}};
+    for (const RunResult::BufferUse& use : result.buffers) {
+        json["buffers"]["peak"][use.name] = use.peak;
+        json["buffers"]["mean"][use.name] = use.mean;
+    }
+    json["deadlock"] = {{"detected", result.verdict == Verdict::deadlock},
+                        {"postponed", c.rays_destroyed},
+                        {"report", result.report}};
+    json["cube"] = {{"depth_cells", scene.frame.depth},
+                    {"cell_width_world", scene.frame.cell_width},
+                    {"polygons", scene.polygons.size()}};
+    json["hash"] = {{"image", hex(image_hash(result.picture))}, {"schedule", hex(result.schedule_hash)}};
+    return json;
+}
+
+Json report(const Accuracy& a) {
+    return {{"psnr_db", a.psnr_db},
+            {"rmse", a.rmse},
+            {"max_error", a.max_error},
+            {"off_by_1_255_percent", a.off_by_1_255_percent},
+            {"off_by_0_1_percent", a.off_by_0_1_percent},
+            {"wrong_hit_percent", a.wrong_hit_percent}};
+}
+
+void write_text(const std::string& path, const std::string& text) {
+    const std::string partial = path + ".partial";
+    std::ofstream file(partial, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file || std::rename(partial.c_str(), path.c_str()) != 0) {
+        const std::string reason = std::strerror(errno);
+        std::remove(partial.c_str());
+        throw std::runtime_error(path + ": can't be written (" + reason + ")");
+    }
+}
+
+}  // namespace raycell

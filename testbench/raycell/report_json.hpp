@@ -1,0 +1,23 @@
+// A run's statistics as JSON; the keys are listed in docs/results.md and stable.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "model/compare.hpp"
+#include "model/placement.hpp"
+#include "pipeline/machine.hpp"
+
+namespace raycell {
+
+/// Everything but config, accuracy and the model's memory.
+nlohmann::ordered_json report(const RunResult& result, const CellScene& scene, const PictureSettings& picture,
+                              const MachineSettings& machine);
+nlohmann::ordered_json report(const Accuracy& accuracy);
+
+/// A 64-bit hash as 16 hexadecimal digits: JSON's numbers can't hold it.
+std::string hex(std::uint64_t value);
+
+/// Writes a text file whole or not at all. Throws std::runtime_error naming file and reason.
+void write_text(const std::string& path, const std::string& text);
+
+}  // namespace raycell

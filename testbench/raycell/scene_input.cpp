@@ -1,0 +1,43 @@
+#include "testbench/raycell/scene_input.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "scenes/load_scene.hpp"
+
+namespace raycell {
+
+CellScene read_and_place(const RenderOptions& options) {
+    if (options.scene.empty()) throw UsageError("no scene given; expected a file .nff or .obj, see --help");
+    Diagnostics diagnostics;
+    std::optional<std::filesystem::path> view;
+    if (!options.view.empty()) view = options.view;
+    const Scene scene = load_scene(options.scene, view, diagnostics);
+    for (const std::string& message : diagnostics.messages()) std::cerr << message << '\n';
+    const Frame frame = place_frame(scene, options.picture);
+    if (!std::isfinite(frame.cell_width) || !(frame.cell_width > 0) || !std::isfinite(frame.depth)) {
+        throw InputError(scene.name, 0, "the view and the scene's extent give no cube of finite size",
+                         "a scene whose extent is within reach of the viewer's distance");
+    }
+    CellScene placed = place_scene(scene, frame, options.picture);
+    for (const std::string& warning : placed.warnings) std::cerr << scene.name << ": warning: " << warning << '\n';
+    return placed;
+}
+
+void check_output(const std::string& prefix) {
+    const std::filesystem::path path(prefix);
+    const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    if (path.filename().empty() || !std::filesystem::is_directory(folder) ||
+        access(folder.c_str(), W_OK | X_OK) != 0) {
+        throw UsageError("--output " + prefix + ": expected a name in a folder that exists and can be written to");
+    }
+}
+
+bool shows_progress(const RenderOptions& options) { return !options.quiet && isatty(STDERR_FILENO); }
+
+void end_progress() { std::cerr << "\r\033[K" << std::flush; }
+
+}  // namespace raycell
