@@ -83,7 +83,7 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context)
     const auto hit = nearest_in_cell(store, ray, t_end, context.settings.hit, context.scene.frame.level(),
                                  &visit.comparisons);
     // What lies on the source itself does not hide it.
-    if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach)) {
+    if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach - hair)) {
         visit.event = Visit::Event::hit;
         visit.hit = *hit;
     }

@@ -1,5 +1,7 @@
 #include "testbench/raycell/picture_file.hpp"
 
+#include "testbench/raycell/new_file.hpp"
+
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -7,7 +9,6 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -17,56 +18,10 @@
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
-#include <utility>
 
 namespace raycell {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-std::string reason_of(int error) { return std::strerror(error); }
-
-[[noreturn]] void fail(const char* what, const std::string& path, const std::string& why) {
-    throw std::runtime_error(std::string("can't ") + what + " " + path + ": " + why);
-}
-
-/// A file that comes to be under its name only when it is whole.
-class NewFile {
-  public:
-    explicit NewFile(const std::string& path)
-        : path_(path), partial_(path + ".part" + std::to_string(getpid())) {
-        std::error_code ignored;
-        const fs::file_status status = fs::status(path, ignored);
-        if (fs::exists(status) && !fs::is_regular_file(status))
-            fail("write", path, "it exists and is not a regular file");
-        file_ = std::fopen(partial_.c_str(), "wb");
-        if (!file_) fail("write", path, reason_of(errno));
-    }
-    ~NewFile() {
-        if (file_) std::fclose(file_);
-        if (!partial_.empty()) std::remove(partial_.c_str());
-    }
-    NewFile(const NewFile&) = delete;
-    NewFile& operator=(const NewFile&) = delete;
-
-    std::FILE* stream() { return file_; }
-
-    /// Gives the file its name. Whatever went wrong in writing comes to light here at the latest.
-    void finish() {
-        const bool written = std::fflush(file_) == 0 && !std::ferror(file_);
-        const int error = errno;
-        const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-        if (!written || !closed) fail("write", path_, reason_of(written ? errno : error));
-        if (std::rename(partial_.c_str(), path_.c_str()) != 0) fail("write", path_, reason_of(errno));
-        partial_.clear();
-    }
-
-  private:
-    std::string path_;
-    std::string partial_;
-    std::FILE* file_ = nullptr;
-};
 
 /// OpenEXR's own stream swallows what fails in its destructor; stdio's error flag does not.
 class ExrStream : public Imf::OStream {

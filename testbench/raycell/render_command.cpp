@@ -12,6 +12,7 @@
 #include "model/truth/truth.hpp"
 #include "model/untimed.hpp"
 #include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/picture_file.hpp"
 #include "testbench/raycell/report_json.hpp"
 #include "testbench/raycell/scene_input.hpp"
@@ -66,15 +67,14 @@ struct Run {
     std::string cells_csv;
 };
 
-std::string cells_csv(Array& array, int width, int height, Cycle trace_cycles) {
+/// Peaks per cell; a link's buffers stand at the cell that it leads to.
+std::string cells_csv(Array& array, int width, int height) {
     std::string text = "x,y,voxels,edges,ray_store_peak,ray_buffers_peak,answer_buffers_peak,link_busy_cycles\n";
     struct Row {
         int rays = 0;
         int answers = 0;
         std::uint64_t busy = 0;
     };
-    (void)trace_cycles;
-    // A link's buffers stand at the cell that it leads to.
     std::vector<Row> rows(std::size_t(width) * std::size_t(height));
     std::size_t i = 0;
     for (int y = 0; y < height; ++y) {
@@ -122,8 +122,7 @@ Run run_timed(const RenderOptions& options, const CellScene& scene, const Exteri
     const bool progress = shows_progress(options);
     run.result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
-    run.cells_csv =
-        cells_csv(machine.array(), options.picture.width, options.picture.height, run.result.trace_cycles);
+    run.cells_csv = cells_csv(machine.array(), options.picture.width, options.picture.height);
     return run;
 }
 
@@ -176,13 +175,14 @@ Json model_report(const Run& run) {
 }
 
 /// Renders the truth beside the picture and reports how far apart they are.
-Json render_truth(const RenderOptions& options, const CellScene& scene, const Picture& picture) {
+Json render_truth(const RenderOptions& options, const CellScene& scene, const Picture& picture,
+                  OutputSet& outputs) {
     const CellScene clipped = options.clip_truth ? clip_scene(scene) : scene;
     const TruthRenderer truth(clipped, {options.picture.max_depth, options.picture.min_weight});
     const Picture exact = truth.render();
-    write_exr(exact, options.prefix + ".truth.exr");
-    write_png(exact, options.prefix + ".truth.png");
-    write_png(difference(picture, exact), options.prefix + ".difference.png");
+    write_exr(exact, outputs.path(".truth.exr"));
+    write_png(exact, outputs.path(".truth.png"));
+    write_png(difference(picture, exact), outputs.path(".difference.png"));
     return report(compare(picture, exact));
 }
 
@@ -242,18 +242,19 @@ int run(const RenderOptions& options, const OptionTable& table) {
                                                : run_untimed(options, scene, tracer.get());
     done.wall_build += wall_placing;
 
-    const std::string& prefix = options.prefix;
+    OutputSet outputs(options.prefix);
     const RunResult& result = done.result;
     Json json = report(result, scene, options.picture, options.machine);
     Json config = table.values();
-    if (options.truth) json["accuracy"] = render_truth(options, scene, result.picture);
+    if (options.truth) json["accuracy"] = render_truth(options, scene, result.picture, outputs);
     json["config"] = config;
     json["model"] = model_report(done);
-    write_exr(result.picture, prefix + ".exr");
-    write_png(result.picture, prefix + ".png");
-    write_text(prefix + ".cells.csv", done.cells_csv);
-    write_text(prefix + ".toml", to_toml(config));
-    write_text(prefix + ".json", json.dump(2) + "\n");
+    write_exr(result.picture, outputs.path(".exr"));
+    write_png(result.picture, outputs.path(".png"));
+    write_text(outputs.path(".cells.csv"), done.cells_csv);
+    write_text(outputs.path(".toml"), to_toml(config));
+    write_text(outputs.path(".json"), json.dump(2) + "\n");
+    outputs.keep();
     explain(result);
     if (!options.quiet) summarise(options, json);
     return exit_code(result.verdict);

@@ -1,10 +1,6 @@
 #include "testbench/raycell/report_json.hpp"
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <stdexcept>
 
 namespace raycell {
 namespace {
@@ -91,18 +87,6 @@ Json report(const Accuracy& a) {
             {"off_by_1_255_percent", a.off_by_1_255_percent},
             {"off_by_0_1_percent", a.off_by_0_1_percent},
             {"wrong_hit_percent", a.wrong_hit_percent}};
-}
-
-void write_text(const std::string& path, const std::string& text) {
-    const std::string partial = path + ".partial";
-    std::ofstream file(partial, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file || std::rename(partial.c_str(), path.c_str()) != 0) {
-        const std::string reason = std::strerror(errno);
-        std::remove(partial.c_str());
-        throw std::runtime_error(path + ": can't be written (" + reason + ")");
-    }
 }
 
 }  // namespace raycell

@@ -17,7 +17,4 @@ nlohmann::ordered_json report(const Accuracy& accuracy);
 /// A 64-bit hash as 16 hexadecimal digits: JSON's numbers can't hold it.
 std::string hex(std::uint64_t value);
 
-/// Writes a text file whole or not at all. Throws std::runtime_error naming file and reason.
-void write_text(const std::string& path, const std::string& text);
-
 }  // namespace raycell

@@ -5,6 +5,7 @@
 #include "model/truth/clip.hpp"
 #include "model/truth/truth.hpp"
 #include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/picture_file.hpp"
 #include "testbench/raycell/report_json.hpp"
 #include "testbench/raycell/scene_input.hpp"
@@ -49,10 +50,12 @@ int run(const TruthOptions& options, const OptionTable& table) {
     json["hash"]["image"] = hex(image_hash(picture));
     json["model"]["wall_seconds"]["trace"] =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    write_exr(picture, options.prefix + ".exr");
-    write_png(picture, options.prefix + ".png");
-    write_text(options.prefix + ".toml", to_toml(table.values()));
-    write_text(options.prefix + ".json", json.dump(2) + "\n");
+    OutputSet outputs(options.prefix);
+    write_exr(picture, outputs.path(".exr"));
+    write_png(picture, outputs.path(".png"));
+    write_text(outputs.path(".toml"), to_toml(table.values()));
+    write_text(outputs.path(".json"), json.dump(2) + "\n");
+    outputs.keep();
     if (!options.quiet) std::cout << options.prefix << ".png\n";
     return exit_done;
 }
