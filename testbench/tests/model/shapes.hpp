@@ -1,0 +1,247 @@
+// Polygons and closed surfaces for property tests, in cell coordinates.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "../property.hpp"
+#include "../truth/hand_made.hpp"
+
+namespace raycell::shapes {
+
+using hand_made::pi;
+using property::Random;
+
+/// A frame of axes turned at random: columns are unit and at right angles.
+struct Axes {
+    dvec3 u{1, 0, 0};
+    dvec3 v{0, 1, 0};
+    dvec3 w{0, 0, 1};
+    dvec3 operator()(const dvec3& p) const { return p.x * u + p.y * v + p.z * w; }
+};
+inline Axes turned(Random& random) {
+    Axes axes;
+    axes.w = hand_made::random_direction(random.engine());
+    axes.u = glm::normalize(glm::cross(axes.w, hand_made::random_direction(random.engine())));
+    axes.v = glm::cross(axes.w, axes.u);
+    return axes;
+}
+/// Axes whose plane (u, v) faces the viewer, is seen edge-on upright, edge-on along a row, or lies anyhow.
+inline Axes attitude(Random& random, int kind) {
+    const double turn = random.uniform(0, 2 * pi);
+    const double c = std::cos(turn);
+    const double s = std::sin(turn);
+    switch (kind) {
+        case 0: return {{c, s, 0}, {-s, c, 0}, {0, 0, 1}};                    // faces the viewer
+        case 1: return {{0, c, s}, {0, -s, c}, {1, 0, 0}};                    // wall across x
+        case 2: return {{c, 0, s}, {s, 0, -c}, {0, 1, 0}};                    // floor
+        case 3: return {{c, s, 0}, {0, 0, 1}, {s, -c, 0}};                    // upright, edge-on, any direction
+        case 4: {                                                             // nearly edge-on
+            const dvec3 u{c, s, 0};
+            const dvec3 v = glm::normalize(dvec3(-s * 1e-4, c * 1e-4, 1));
+            return {u, v, glm::cross(u, v)};
+        }
+        default: return turned(random);
+    }
+}
+
+/// A simple outline in the plane, star-shaped round the origin, concave: radii jump from vertex to vertex.
+inline std::vector<dvec2> star(Random& random, int corners, double size) {
+    std::vector<dvec2> outline;
+    for (int i = 0; i < corners; ++i) {
+        const double angle = 2 * pi * (i + random.uniform(0.05, 0.95)) / corners;
+        outline.push_back(size * random.uniform(0.2, 1) * dvec2(std::cos(angle), std::sin(angle)));
+    }
+    return outline;
+}
+/// A comb: concave with many parallel teeth, all corners on a grid, so that corners line up in rows.
+inline std::vector<dvec2> comb(int teeth, double size) {
+    std::vector<dvec2> outline = {{-size, -size}, {size, -size}};
+    const double step = 2 * size / (2 * teeth - 1);
+    for (int i = teeth - 1; i >= 0; --i) {
+        const double left = -size + 2 * i * step;
+        outline.push_back({left + step, size});
+        outline.push_back({left, size});
+        if (i > 0) {
+            outline.push_back({left, 0});
+            outline.push_back({left - step, 0});
+        }
+    }
+    return outline;
+}
+inline std::vector<dvec3> lift(const std::vector<dvec2>& outline, const Axes& axes, const dvec3& centre) {
+    std::vector<dvec3> lifted;
+    for (const dvec2& p : outline) lifted.push_back(centre + p.x * axes.u + p.y * axes.v);
+    return lifted;
+}
+
+/// Even-odd: on which side of the outline a point lies, and how far its nearest edge is.
+struct Place {
+    bool inside = false;
+    double distance = 1e300;
+};
+inline Place place_of(const std::vector<dvec2>& outline, const dvec2& p) {
+    Place place;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        const dvec2& a = outline[i];
+        const dvec2& b = outline[(i + 1) % outline.size()];
+        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) * (b.x - a.x) / (b.y - a.y)) {
+            place.inside = !place.inside;
+        }
+        const dvec2 along = b - a;
+        const double squared = glm::dot(along, along);
+        const double t = squared > 0 ? std::clamp(glm::dot(p - a, along) / squared, 0.0, 1.0) : 0;
+        place.distance = std::min(place.distance, glm::length(p - a - t * along));
+    }
+    return place;
+}
+inline std::vector<dvec2> projected(const std::vector<dvec3>& outline, int drop) {
+    std::vector<dvec2> flat;
+    for (const dvec3& p : outline) flat.push_back(project(p, drop));
+    return flat;
+}
+inline double area_of(const std::vector<dvec3>& outline) { return 0.5 * glm::length(newell(outline)); }
+
+/// A closed surface: its scene, and points that certainly lie inside of it.
+struct Closed {
+    CellScene scene;
+    std::function<dvec3(Random&)> inside;
+    /// Whether there is a way to it from every side: nothing of it lies on the cube's own faces.
+    bool has_outside() const {
+        const Box cube = scene.frame.cube();
+        for (const Polygon& polygon : scene.polygons) {
+            for (const dvec3& p : polygon.vertices) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (p[axis] < cube.low[axis] + 1e-3 || p[axis] > cube.high[axis] - 1e-3) return false;
+                }
+            }
+        }
+        return true;
+    }
+};
+
+inline CellScene empty_cube(int width, int height, double depth, int levels) {
+    CellScene scene = hand_made::cube(width, height, depth);
+    scene.frame.depth_levels = levels;
+    scene.objects.push_back(hand_made::matt(0.8));
+    return scene;
+}
+
+/// The six faces of centre ± the axes times `half`; fronts outwards, or inwards.
+inline void add_block(CellScene& scene, const dvec3& centre, const Axes& axes, const dvec3& half, bool inward = false) {
+    std::array<dvec3, 8> corner;
+    for (int i = 0; i < 8; ++i) {
+        corner[std::size_t(i)] = centre + axes(half * dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    }
+    constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    for (const auto& face : faces) {
+        std::vector<dvec3> outline;
+        for (const int i : face) outline.push_back(corner[std::size_t(i)]);
+        if (inward) std::reverse(outline.begin(), outline.end());
+        hand_made::add_polygon(scene, 0, outline);
+    }
+}
+
+/// A block: turned at random, or (aligned) with all faces exactly on borders of cells and levels.
+inline Closed block(Random& random, bool aligned) {
+    Closed closed;
+    closed.scene = empty_cube(24, 20, 32, aligned ? 32 : 257);
+    Axes axes;
+    dvec3 centre;
+    dvec3 half;
+    if (aligned) {
+        const dvec3 low{random.whole(0, 9), random.whole(0, 8), random.whole(1, 12)};
+        const dvec3 high = low + dvec3(random.whole(1, 14), random.whole(1, 11), random.whole(1, 19));
+        centre = 0.5 * (low + high);
+        half = 0.5 * (high - low);
+    } else {
+        axes = turned(random);
+        centre = {random.uniform(9, 15), random.uniform(8, 12), random.uniform(12, 20)};
+        half = {random.uniform(0.3, 4.5), random.uniform(0.3, 4.5), random.uniform(0.3, 4.5)};
+    }
+    add_block(closed.scene, centre, axes, half);
+    closed.inside = [=](Random& r) {
+        return centre + axes(half * dvec3(r.uniform(-0.98, 0.98), r.uniform(-0.98, 0.98), r.uniform(-0.98, 0.98)));
+    };
+    return closed;
+}
+
+/// A ball of facets with vertices shared bit for bit.
+inline Closed ball(Random& random) {
+    Closed closed;
+    closed.scene = empty_cube(22, 24, 26, random.whole(20, 1024));
+    const dvec3 centre{random.uniform(9, 13), random.uniform(9, 15), random.uniform(10, 16)};
+    const double radius = random.uniform(1, 8);
+    hand_made::add_ball(closed.scene, 0, centre, random.whole(5, 24), random.whole(4, 16),
+                        [=](const dvec3&) { return radius; });
+    closed.inside = [=](Random& r) {
+        return centre + 0.35 * radius * r.uniform(0, 1) * hand_made::random_direction(r.engine());
+    };
+    return closed;
+}
+
+/// A wedge: a long thin prism over a triangle, down to 1/500 of its length.
+inline Closed wedge(Random& random) {
+    Closed closed;
+    closed.scene = empty_cube(24, 24, 24, random.whole(24, 2000));
+    const Axes axes = random.chance(0.3) ? attitude(random, random.whole(0, 4)) : turned(random);
+    const dvec3 centre{random.uniform(11, 13), random.uniform(11, 13), random.uniform(11, 13)};
+    const double thin = std::pow(10, random.uniform(-1.7, 0.5));
+    const dvec3 ends[3] = {{-6, 0, 0}, {6, thin, 0}, {6, -thin, 0}};
+    std::vector<dvec3> front;
+    std::vector<dvec3> back;
+    for (const dvec3& p : ends) {
+        front.push_back(centre + axes(p - dvec3(0, 0, 3)));
+        back.push_back(centre + axes(p + dvec3(0, 0, 3)));
+    }
+    CellScene& scene = closed.scene;
+    hand_made::add_polygon(scene, 0, front);
+    hand_made::add_polygon(scene, 0, {back[2], back[1], back[0]});
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        hand_made::add_polygon(scene, 0, {front[j], front[i], back[i], back[j]});
+    }
+    closed.inside = [=](Random& r) {
+        double a = r.uniform(0, 1);
+        double b = r.uniform(0, 1);
+        if (a + b > 1) a = 1 - a, b = 1 - b;
+        a = 0.02 + 0.94 * a, b = 0.02 + 0.94 * b;
+        const dvec3 p = ends[0] + a * (ends[1] - ends[0]) + b * (ends[2] - ends[0]);
+        return centre + axes({p.x, p.y, r.uniform(-2.9, 2.9)});
+    };
+    return closed;
+}
+
+/// A room with furniture: the rays start in it. Its walls are parallel to the axes, as Cornell's are.
+inline Closed room(Random& random) {
+    Closed closed;
+    closed.scene = empty_cube(20, 20, 40, random.whole(40, 1024));
+    const dvec3 low{random.uniform(0.1, 2), random.uniform(0.1, 2), random.uniform(0.1, 2)};
+    const dvec3 high{random.uniform(17, 19.9), random.uniform(17, 19.9), random.uniform(30, 39.9)};
+    add_block(closed.scene, 0.5 * (low + high), {}, 0.5 * (high - low), true);
+    add_block(closed.scene, {8, 12, 25}, turned(random), {1.5, 3, 1.5});
+    closed.inside = [=](Random& r) {
+        const dvec3 share{r.uniform(0.01, 0.99), r.uniform(0.01, 0.99), r.uniform(0.01, 0.99)};
+        return low + share * (high - low);
+    };
+    return closed;
+}
+
+/// A direction whose slope dz/dx is log-uniform from 1/1000 to 1000, sometimes 0, sometimes axial, often in a plane
+/// of the axes.
+inline dvec3 sloped_direction(Random& random) {
+    if (random.chance(0.05)) return {0, 0, random.chance(0.5) ? 1 : -1};
+    const double turn = random.uniform(0, 2 * pi);
+    double x = std::cos(turn);
+    double y = std::sin(turn);
+    if (random.chance(0.1)) x = random.chance(0.5) ? 1 : -1, y = 0;
+    if (random.chance(0.1)) y = random.chance(0.5) ? 1 : -1, x = 0;
+    double z = std::pow(10, random.uniform(-3, 3)) * (random.chance(0.5) ? 1 : -1);
+    if (random.chance(0.1)) z = 0;
+    return glm::normalize(dvec3(x, y, z));
+}
+
+}  // namespace raycell::shapes

@@ -1,0 +1,66 @@
+// Sends one ray through a loaded array exactly as the untimed machine does.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "model/loading.hpp"
+#include "model/tracing.hpp"
+
+namespace raycell::walker {
+
+struct Found {
+    double t = 0;  ///< from the ray's origin
+    std::uint32_t polygon = no_polygon;
+    std::uint32_t voxel = 0;
+    int x = 0;  ///< the cell
+    int y = 0;
+    Ray ray;     ///< as it stood in that cell
+    CellHit hit;
+};
+
+/// A ray that starts at a point inside the cube, in array coordinates.
+inline Ray ray_at(const CellScene& scene, const dvec3& origin, const dvec3& direction, int& x, int& y) {
+    x = std::min(std::max(int(std::floor(origin.x)), 0), scene.frame.width - 1);
+    y = std::min(std::max(int(std::floor(origin.y)), 0), scene.frame.height - 1);
+    Ray ray;
+    ray.position = {origin.x - x, origin.y - y, origin.z};
+    ray.fresh = false;
+    set_direction(ray, direction);
+    return ray;
+}
+
+/// The first hit, or nothing if the ray leaves the cube.
+inline std::optional<Found> walk(const std::vector<CellStore>& cells, const Context& context, Ray ray, int x, int y) {
+    const Frame& frame = context.scene.frame;
+    double travelled = 0;
+    for (int hops = 0; hops <= 2 * (frame.width + frame.height) + 4; ++hops) {
+        const CellStore& store = cells[std::size_t(y) * std::size_t(frame.width) + std::size_t(x)];
+        const Visit visit = visit_cell(store, ray, context);
+        if (visit.event == Visit::Event::hit) {
+            return Found{travelled + visit.hit.t, store.voxels[visit.hit.voxel].polygon, visit.hit.voxel, x, y, ray,
+                         visit.hit};
+        }
+        if (visit.event != Visit::Event::forward) return std::nullopt;
+        travelled += visit.crossing.t;
+        x += step_x(visit.crossing.side);
+        y += step_y(visit.crossing.side);
+        if (x < 0 || y < 0 || x >= frame.width || y >= frame.height) return std::nullopt;
+        cross(ray, visit.crossing);
+    }
+    throw std::logic_error("a ray never leaves the array");
+}
+
+/// Distance from a point inside the cube to where a ray leaves it.
+inline double way_out(const CellScene& scene, const dvec3& origin, const dvec3& direction) {
+    const Box cube = scene.frame.cube();
+    double t = 1e300;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] > 0) t = std::min(t, (cube.high[axis] - origin[axis]) / direction[axis]);
+        if (direction[axis] < 0) t = std::min(t, (cube.low[axis] - origin[axis]) / direction[axis]);
+    }
+    return t;
+}
+
+}  // namespace raycell::walker
