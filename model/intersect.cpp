@@ -38,10 +38,17 @@ bool inside_pieces(const CellStore& store, const Voxel& voxel, const dvec2& uv) 
 bool inside_mask(const Voxel& voxel, const dvec3& point, double level) {
     const double near = voxel.near_level * level;
     const double height = (voxel.far_level - voxel.near_level) * level;
-    dvec3 scaled{point.x, point.y, (point.z - near) / height};
-    const dvec2 uv = project(scaled, voxel.drop);
-    const int column = std::clamp(int(uv.x * 8), 0, 7);
-    const int row = std::clamp(int(uv.y * 8), 0, 7);
+    const dvec3 scaled{point.x, point.y, (point.z - near) / height};
+    const dvec2 uv = project(scaled, voxel.drop) * double(window_steps);
+    const dvec2 low{voxel.window[0], voxel.window[2]};
+    const dvec2 high{voxel.window[1], voxel.window[3]};
+    const dvec2 place = (uv - low) / (high - low);
+    constexpr double rounding = 1e-6;  // of the window: the neighbour's mask must not leave a crack
+    if (glm::any(glm::lessThan(place, dvec2(-rounding))) || glm::any(glm::greaterThan(place, dvec2(1 + rounding)))) {
+        return false;
+    }
+    const int column = std::clamp(int(place.x * 8), 0, 7);
+    const int row = std::clamp(int(place.y * 8), 0, 7);
     return voxel.mask >> (8 * row + column) & 1;
 }
 

@@ -40,15 +40,30 @@ bool covers_centre(const Span& span, double& z) {
     return true;
 }
 
-/// Bounds of the span's part in the projection; with the edges they tell exactly what a convex part touches.
-Rectangle part_bounds(const Span& span) {
+/// Bounds of the part inside the cell; with the edges they tell exactly what a convex part touches.
+Rectangle part_bounds(const std::vector<dvec3>& part, int drop) {
     Rectangle bounds{dvec2(1e300), dvec2(-1e300)};
-    for (int i = 0; i < span.outline_count; ++i) {
-        const dvec2 uv = project(span.outline[std::size_t(i)], span.drop);
-        bounds.low = glm::min(bounds.low, uv);
-        bounds.high = glm::max(bounds.high, uv);
+    for (const dvec3& p : part) {
+        bounds.low = glm::min(bounds.low, project(p, drop));
+        bounds.high = glm::max(bounds.high, project(p, drop));
     }
     return bounds;
+}
+
+/// The window of the mask: the part's bounds, rounded outwards to 32nds of the footprint.
+Rectangle set_window(Voxel& voxel, const Rectangle& whole, const Rectangle& bounds) {
+    const dvec2 size = whole.high - whole.low;
+    const dvec2 low = (bounds.low - hair - whole.low) / size * double(window_steps);
+    const dvec2 high = (bounds.high + hair - whole.low) / size * double(window_steps);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const int from = std::clamp(int(std::floor(low[int(axis)])), 0, window_steps - 1);
+        const int to = std::clamp(int(std::ceil(high[int(axis)])), from + 1, window_steps);
+        voxel.window[2 * axis] = std::uint8_t(from);
+        voxel.window[2 * axis + 1] = std::uint8_t(to);
+    }
+    const dvec2 step = size / double(window_steps);
+    return {whole.low + step * dvec2(voxel.window[0], voxel.window[2]),
+            whole.low + step * dvec2(voxel.window[1], voxel.window[3])};
 }
 
 bool overlap(const Rectangle& a, const Rectangle& b) {
@@ -100,7 +115,6 @@ void set_point(Voxel& voxel, const std::vector<dvec3>& part) {
 void merge(Voxel& voxel, const Voxel& piece) {
     voxel.near_level = std::min(voxel.near_level, piece.near_level);
     voxel.far_level = std::max(voxel.far_level, piece.far_level);
-    voxel.mask |= piece.mask;
     const double area = voxel.area + piece.area;
     if (area > 0) voxel.point = (voxel.area * voxel.point + piece.area * piece.point) / area;
     voxel.area = area;
@@ -149,7 +163,10 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
             if (most_over(edge, whole) < -hair) return false;  // wholly outside: touches only the run's box
             if (least_over(edge, whole) < -hair) crossing[std::size_t(crossings++)] = edge;
         }
-        if (settings.hit == HitTest::mask) voxel.mask = coverage(crossing.data(), crossings, whole, part_bounds(span));
+        if (settings.hit == HitTest::mask) {
+            const Rectangle bounds = part_bounds(part, span.drop);
+            voxel.mask = coverage(crossing.data(), crossings, set_window(voxel, whole, bounds), bounds);
+        }
     }
     set_point(voxel, part);
 
@@ -159,8 +176,8 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
             v.normal = {span.normal.at(project(v.point, span.drop)), {0, 0, 0}, {0, 0, 0}};
         }
     };
-    // The pieces of one polygon come one after the other. A mask over z is relative to its own run: kept apart.
-    const bool mergeable = settings.hit != HitTest::mask || span.drop == 2;
+    // The pieces of one polygon come one after the other. A mask belongs to its own window: kept apart.
+    const bool mergeable = settings.hit != HitTest::mask;
     if (mergeable && !store.voxels.empty() && store.voxels.back().polygon == span.polygon) {
         Voxel& before = store.voxels.back();
         merge(before, voxel);
@@ -208,7 +225,7 @@ VoxelBits voxel_bits(const PictureSettings& settings, int word_bits, std::size_t
     if (settings.hit != HitTest::depth) bits.base += level_bits;
     // Two slopes, an offset and which axis they are for.
     if (settings.hit >= HitTest::plane) bits.base += 3 * word_bits + 2;
-    if (settings.hit == HitTest::mask) bits.base += 64;
+    if (settings.hit == HitTest::mask) bits.base += 64 + 4 * 5;  // coverage and its window
     if (settings.hit == HitTest::edge) bits.base += 4;  // how many edges follow
     if (settings.normals == Normals::linear) bits.base += 6 * word_bits;
     if (settings.shadows != Shadows::per_hit) {

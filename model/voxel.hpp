@@ -1,6 +1,7 @@
 // Voxels: what a cell makes from a span and keeps (design, section 4).
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "model/settings.hpp"
@@ -21,7 +22,10 @@ struct Voxel {
     std::uint8_t pieces = 0;       ///< convex pieces told apart by edges; 0: the polygon covers the whole cell
     std::uint16_t edge_count = 0;
     std::uint32_t first_edge = 0;  ///< index into CellStore::edges
-    std::uint64_t mask = 0;        ///< bit 8·row + column, over (u, v) of the plane's projection
+    std::uint64_t mask = 0;        ///< bit 8·row + column, over the window
+    /// The mask's window: u from, u to, v from, v to, in 32nds of the cell (of the run where an axis is z). It
+    /// frames the polygon's part, so that the 64 bits lie where there is something to tell apart.
+    std::array<std::uint8_t, 4> window{0, 32, 0, 32};
     dvec3 point{0, 0, 0};          ///< the voxel's own point: precast and memo shadows, `voxel` normals
     double area = 0;               ///< of the polygon in the cell, while loading: weight of `point` in a merge
 };
@@ -40,6 +44,8 @@ struct CellStore {
 /// there already. Returns false if the polygon turns out not to touch the cell (or, at rung `depth`, not to cover its
 /// centre), or if the store is full; then `overflowed` counts it.
 bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level);
+
+constexpr int window_steps = 32;
 
 /// Bits that one voxel takes, without its edges, and bits of one edge.
 struct VoxelBits {

@@ -120,7 +120,9 @@ TEST(Placement, WhatTheViewerSeesLiesBetweenTheScreenAndTheBack) {
             }
         }
     }
-    if (property::seeds(0, 2).size() > 1) EXPECT_GT(tried, 10000);
+    if (property::seeds(0, 2).size() > 1) {
+        EXPECT_GT(tried, 10000);
+    }
 }
 
 TEST(Placement, BeyondTellsOfEachFaceWhetherAnythingPasses) {

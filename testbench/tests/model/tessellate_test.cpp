@@ -132,7 +132,9 @@ TEST(Tessellation, IsNeverCoarserThanAskedAndNotMuchFiner) {
             if (n > 1 && n < max_sphere_subdivision) {
                 EXPECT_LE(radius * (1 - 1 / std::sqrt(1 + 2.0 / (n * n))), chord * (1 + 1e-12)) << radius;
             }
-            if (n == 1) EXPECT_LE(radius * (1 - 0.58), chord) << radius;
+            if (n == 1) {
+                EXPECT_LE(radius * (1 - 0.58), chord) << radius;
+            }
             EXPECT_GE(cone_facets(2 * radius, chord), round);
             EXPECT_GE(sphere_subdivision(2 * radius, chord), n);
         }
