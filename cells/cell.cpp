@@ -17,10 +17,14 @@ void Cell::connect(Side side, LinkIn* in, LinkOut* out) {
     if (!in) return;
     const bool horizontal = side == Side::east || side == Side::west;
     for (int index = 0; index < env_.classes.count; ++index) {
+        std::uint32_t bits = index == env_.classes.answer ? 1U << (answer_bits + unsigned(side)) : 0;
         const bool answers_only = index == env_.classes.answer && env_.classes.count > 1;
         // What comes in at one side runs towards the other.
-        if (answers_only || !env_.classes.used(index, horizontal, opposite(side))) continue;
-        ray_inputs_.push_back({in, index, side});
+        if (!answers_only && env_.classes.used(index, horizontal, opposite(side))) {
+            bits |= 1U << ray_inputs_.size();
+            ray_inputs_.push_back({in, index, side});
+        }
+        if (bits) in->watch(index, &pending_, bits);
     }
 }
 
@@ -99,6 +103,7 @@ void Cell::start_traversal(Cycle now) {
     const std::size_t places = place_count();
     for (std::size_t i = 0; i < places; ++i) {
         const std::size_t place = (next_test_ + i) % places;
+        if (nothing_at(place)) continue;
         RayPacket* packet = packet_at(place);
         if (!packet || packet->stage != RayPacket::Stage::untested) continue;
         packet->visit = visit_cell(store_, packet->ray, env_.context);
@@ -148,8 +153,9 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
 
 void Cell::move_answers(Cycle now) {
     const int index = env_.classes.answer;
-    for (LinkIn* in : in_) {
-        if (!in) continue;
+    for (int side = 0; side < side_count; ++side) {
+        if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
+        LinkIn* in = in_[std::size_t(side)];
         const Message message = in->front(index);
         if (message.kind != Message::Kind::answer) continue;
         const Cycle ready = in->arrival(index) + env_.costs().route_return - 1;
@@ -166,14 +172,14 @@ void Cell::move_answers(Cycle now) {
             deliver(*answer, now);
             env_.pools.answers.give_back(answer);
         } else {
-            const Side side = route(*answer);
-            LinkOut* out = out_[std::size_t(side)];
+            const Side way = route(*answer);
+            LinkOut* out = out_[std::size_t(way)];
             if (!out->can_send(index, next_)) continue;
             ++env_.counters.rays.return_hops;
             if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
             const bool intensity = answer->kind == Answer::Kind::intensity;
             out->send(index, message, env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
-            record(now, Event::send, std::uint32_t(side) << 8 | unsigned(index));
+            record(now, Event::send, std::uint32_t(way) << 8 | unsigned(index));
         }
         in->pop(index);
         if (in->occupancy(index) > 0) want(now + 1);
@@ -185,6 +191,7 @@ void Cell::move_rays(Cycle now) {
     const std::size_t first = next_move_;
     for (std::size_t i = 0; i < places; ++i) {
         const std::size_t place = (first + i) % places;
+        if (nothing_at(place)) continue;
         RayPacket* packet = packet_at(place);
         if (!packet || packet->stage != RayPacket::Stage::decided) continue;
         if (move_ray(*packet, place, now)) next_move_ = place + 1;

@@ -72,6 +72,9 @@ class Cell {
     // slots' child registers (last, because the store may grow while places are gone through).
     std::size_t place_count() const { return ray_inputs_.size() + ray_store_.touched() + 1; }
     RayPacket* packet_at(std::size_t place) const;
+    bool nothing_at(std::size_t place) const {
+        return place < ray_inputs_.size() && !(pending_ >> place & 1);
+    }
     void remove_from(std::size_t place);
     bool move_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool forward(RayPacket& packet, std::size_t place, Cycle now);
@@ -105,6 +108,9 @@ class Cell {
     std::array<LinkOut*, side_count> out_{};
     LinkIn* load_in_ = nullptr;
     std::vector<RayInput> ray_inputs_;
+    /// Bit per buffer that holds anything: ray inputs from 0, answers by side from `answer_bits`.
+    std::uint32_t pending_ = 0;
+    static constexpr unsigned answer_bits = 16;
     CellStore store_;
     RayStore ray_store_;
     Traversal traversal_;

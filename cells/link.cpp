@@ -38,6 +38,7 @@ void Link::send(int index, const Message& message, int cycles) {
     const std::size_t place = (buffer.head + buffer.count) % buffer.ring.size();
     buffer.ring[place] = {message, now, now + Cycle(cycles)};
     ++buffer.count;
+    if (buffer.pending) *buffer.pending |= buffer.pending_bits;
     ++buffer.statistics.sent;
     // A place read in this cycle still counts: the peak must not depend on which end ran first.
     const std::uint32_t still_seen = buffer.last_pop == now ? buffer.popped_now : 0;
@@ -46,6 +47,13 @@ void Link::send(int index, const Message& message, int cycles) {
     busy_cycles_ += std::uint64_t(cycles);
     if (arrivals_) arrivals_->arrives(port_, index, wires_free_);
     if (sink_) scheduler_.wake(*sink_, wires_free_);
+}
+
+void Link::watch(int index, std::uint32_t* pending, std::uint32_t bits) {
+    Buffer& buffer = buffers_[std::size_t(index)];
+    buffer.pending = pending;
+    buffer.pending_bits = bits;
+    if (buffer.count > 0) *pending |= bits;
 }
 
 Message Link::front(int index) const {
@@ -67,6 +75,7 @@ void Link::pop(int index) {
     ++buffer.statistics.delivered;
     buffer.head = std::uint32_t((buffer.head + 1) % buffer.ring.size());
     --buffer.count;
+    if (buffer.count == 0 && buffer.pending) *buffer.pending &= ~buffer.pending_bits;
     if (buffer.last_pop != now) {
         buffer.last_pop = now;
         buffer.popped_now = 0;

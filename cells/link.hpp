@@ -33,6 +33,9 @@ class LinkIn : virtual public sc_core::sc_interface {
     virtual void pop(int index) = 0;
     /// Messages in a buffer, those still on the wires included.
     virtual int occupancy(int index) const = 0;
+    /// Asks the channel to keep `bits` set in `pending` while the buffer of a class holds anything, on the wires or
+    /// arrived: so a cell need not look into empty buffers. A channel that can't leaves them set for ever.
+    virtual void watch(int /*index*/, std::uint32_t* pending, std::uint32_t bits) { *pending |= bits; }
 };
 
 /// The channel. Writes and reads of a cycle show in the next one, so the order in which cells run does not matter.
@@ -67,6 +70,7 @@ class Link : public LinkOut, public LinkIn {
     Message front(int index) const override;
     Cycle arrival(int index) const override;
     void pop(int index) override;
+    void watch(int index, std::uint32_t* pending, std::uint32_t bits) override;
     int occupancy(int index) const override { return int(buffers_[std::size_t(index)].count); }
 
     int classes() const { return int(buffers_.size()); }
@@ -87,6 +91,8 @@ class Link : public LinkOut, public LinkIn {
         std::uint32_t popped_now = 0;  ///< in cycle last_pop: not yet room for the sender
         Cycle last_pop = never;
         bool sender_waits = false;
+        std::uint32_t pending_bits = 0;
+        std::uint32_t* pending = nullptr;  ///< the sink's
         ClassStatistics statistics;
     };
 

@@ -114,7 +114,10 @@ Run run_timed(const RenderOptions& options, const CellScene& scene, const Exteri
     Run run;
     const auto start = Clock::now();
     const std::uint64_t before = memory_bytes();
-    Machine machine("machine", scene, options.picture, options.machine, tracer);
+    // Never destroyed: SystemC takes ports down in quadratic time (minutes for 256x256 cells), and a process has only
+    // one elaboration anyway.
+    static Machine* const kept = new Machine("machine", scene, options.picture, options.machine, tracer);
+    Machine& machine = *kept;
     const std::uint64_t cells = std::uint64_t(options.picture.width) * std::uint64_t(options.picture.height);
     const std::uint64_t after = memory_bytes();
     run.bytes_per_cell = after > before ? (after - before) / cells : 0;

@@ -1,0 +1,196 @@
+// The ladder's upper end is exact: `edge` finds what a search through all polygons finds.
+#include <algorithm>
+#include <set>
+
+#include "shapes.hpp"
+#include "walker.hpp"
+
+namespace raycell {
+namespace {
+
+using property::Random;
+
+struct Exact {
+    double t = 1e300;
+    std::uint32_t polygon = no_polygon;
+    bool doubtful = false;  ///< passes an edge too closely, or runs along a plane, for two computations to agree
+};
+
+Exact search(const CellScene& scene, const dvec3& origin, const dvec3& direction) {
+    Exact exact;
+    double second = 1e300;
+    for (const Polygon& polygon : scene.polygons) {
+        const dvec3& n = polygon.plane.n;
+        const double along = glm::dot(n, direction);
+        if (std::abs(along) < 1e-7) {
+            exact.doubtful = exact.doubtful || std::abs(glm::dot(n, origin) - polygon.plane.c) < 1e-5;
+            continue;
+        }
+        const double t = (polygon.plane.c - glm::dot(n, origin)) / along;
+        if (t < -1e-6) continue;
+        const auto place = shapes::place_of(shapes::projected(polygon.vertices, polygon.drop),
+                                            project(origin + t * direction, polygon.drop));
+        if (place.distance < 1e-5 || std::abs(t) < 1e-5) exact.doubtful = true;
+        if (!place.inside) continue;
+        if (t < exact.t) {
+            second = exact.t;
+            exact.t = t;
+            exact.polygon = polygon.id;
+        } else {
+            second = std::min(second, t);
+        }
+    }
+    if (exact.polygon != no_polygon && second - exact.t < 1e-6) exact.doubtful = true;
+    return exact;
+}
+
+void expect_exact(const CellScene& scene, Random& random, int rays) {
+    PictureSettings settings;
+    settings.width = scene.frame.width;
+    settings.height = scene.frame.height;
+    settings.depth_levels = scene.frame.depth_levels;
+    settings.exterior = ExteriorMode::none;
+    const auto cells = load_array(scene, settings);
+    const Context context{scene, settings};
+    int doubtful = 0;
+    for (int i = 0; i < rays; ++i) {
+        const dvec3 share{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
+        const dvec3 origin = share * scene.frame.cube().high;
+        const dvec3 direction = shapes::sloped_direction(random);
+        const Exact exact = search(scene, origin, direction);
+        if (exact.doubtful) {
+            ++doubtful;
+            continue;
+        }
+        int x = 0;
+        int y = 0;
+        const Ray ray = walker::ray_at(scene, origin, direction, x, y);
+        const auto found = walker::walk(cells, context, ray, x, y);
+        std::ostringstream text;
+        text.precision(17);
+        text << "ray from (" << origin.x << ", " << origin.y << ", " << origin.z << ") along (" << direction.x << ", "
+             << direction.y << ", " << direction.z << ")";
+        ASSERT_EQ(found.has_value(), exact.polygon != no_polygon)
+            << text.str() << "; found " << (found ? found->polygon : no_polygon) << ", exact " << exact.polygon;
+        if (!found) continue;
+        ASSERT_EQ(found->polygon, exact.polygon) << text.str();
+        ASSERT_NEAR(found->t, exact.t, 1e-6) << text.str();
+    }
+    EXPECT_LT(doubtful, rays / 10);
+}
+
+TEST(Ladder, EdgeFindsWhatASearchThroughAllPolygonsFinds) {
+    for (const std::uint64_t seed : property::seeds(1, 60)) {
+        SCOPED_TRACE(property::rerun(seed));
+        Random random(seed);
+        CellScene scene = shapes::empty_cube(random.whole(1, 24), random.whole(1, 24), random.uniform(5, 30), random.whole(1, 1500));
+        const dvec3 size = scene.frame.cube().high;
+        for (int i = 0; i < 25; ++i) {
+            const shapes::Axes axes = shapes::attitude(random, random.whole(0, 5));
+            const dvec3 centre = size * dvec3(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
+            auto outline = shapes::lift(shapes::star(random, random.whole(3, 40), random.uniform(0.1, 7)), axes, centre);
+            // Cut to the cube: what sticks out is the exterior's.
+            outline = clip_to_box(outline, scene.frame.cube());
+            if (outline.empty() || shapes::area_of(outline) < 1e-6) continue;
+            hand_made::add_polygon(scene, 0, outline);
+        }
+        expect_exact(scene, random, 300);
+        if (::testing::Test::HasFatalFailure()) return;
+    }
+}
+
+TEST(Ladder, EdgeIsExactOnConcavePolygonsAlongTheCellBorders) {
+    for (const std::uint64_t seed : property::seeds(100, 60)) {
+        SCOPED_TRACE(property::rerun(seed));
+        Random random(seed);
+        const int depth = random.whole(16, 24);
+        CellScene scene = shapes::empty_cube(16, 16, depth, depth * random.whole(1, 3));
+        const dvec3 unit[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        for (int i = 0; i < 8; ++i) {
+            const int first = random.whole(0, 2);
+            const int second = (first + random.whole(1, 2)) % 3;
+            const int teeth = random.whole(2, 4);
+            const shapes::Axes axes{unit[first], unit[second], glm::cross(unit[first], unit[second])};
+            const double size = (2 * teeth - 1) / 2.0;  // teeth and gaps one cell wide
+            dvec3 centre{8, 8, 8};
+            centre += 0.5 * (unit[first] + unit[second]);
+            centre[3 - first - second] = random.whole(1, 15) + (random.chance(0.5) ? 0.0 : 0.25);
+            hand_made::add_polygon(scene, 0, shapes::lift(shapes::comb(teeth, size), axes, centre));
+        }
+        // Two polygons in one plane are no surface.
+        std::set<std::pair<int, double>> planes;
+        std::vector<Polygon> kept;
+        for (Polygon& polygon : scene.polygons) {
+            if (!planes.insert({dominant_axis(polygon.plane.n), polygon.vertices[0][dominant_axis(polygon.plane.n)]}).second) continue;
+            polygon.id = std::uint32_t(kept.size());
+            kept.push_back(polygon);
+        }
+        scene.polygons = kept;
+        expect_exact(scene, random, 300);
+        if (::testing::Test::HasFatalFailure()) return;
+    }
+}
+
+TEST(Ladder, ARayCannotHitThePolygonThatItLeaves) {
+    CellScene scene = shapes::empty_cube(4, 4, 8, 64);
+    hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
+    hand_made::add_rectangle(scene, 0, {0, 0, 5}, {4, 0, 0}, {0, 4, 0});
+    for (const HitTest rung : {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
+        PictureSettings settings;
+        settings.width = settings.height = 4;
+        settings.depth_levels = 64;
+        settings.hit = rung;
+        const auto cells = load_array(scene, settings);
+        const Context context{scene, settings};
+        int x = 0;
+        int y = 0;
+        Ray ray = walker::ray_at(scene, {1.3, 1.4, 3}, glm::normalize(dvec3(0.1, 0.2, 1)), x, y);
+        ray.fresh = true;
+        ray.leaves = 0;
+        const auto found = walker::walk(cells, context, ray, x, y);
+        ASSERT_TRUE(found) << "rung " << int(rung);
+        EXPECT_EQ(found->polygon, 1u);
+    }
+}
+
+TEST(Ladder, EqualDistancesGoToTheLowerId) {
+    CellScene scene = shapes::empty_cube(4, 4, 8, 64);
+    hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
+    hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
+    std::swap(scene.polygons[0], scene.polygons[1]);  // stored the other way round
+    for (const HitTest rung : {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
+        PictureSettings settings;
+        settings.width = settings.height = 4;
+        settings.depth_levels = 64;
+        settings.hit = rung;
+        const auto cells = load_array(scene, settings);
+        int x = 0;
+        int y = 0;
+        const Ray ray = walker::ray_at(scene, {1.5, 1.5, 0}, {0, 0, 1}, x, y);
+        const auto found = walker::walk(cells, {scene, settings}, ray, x, y);
+        ASSERT_TRUE(found);
+        EXPECT_EQ(found->polygon, 0u) << "rung " << int(rung);
+    }
+}
+
+TEST(Ladder, AShadowRayIsBlockedBeforeItsSourceOnly) {
+    CellScene scene = shapes::empty_cube(4, 4, 8, 64);
+    hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
+    PictureSettings settings;
+    settings.width = settings.height = 4;
+    settings.depth_levels = 64;
+    const auto cells = load_array(scene, settings);
+    const Context context{scene, settings};
+    for (const double reach : {2.9, 3.0, 3.1}) {
+        int x = 0;
+        int y = 0;
+        Ray ray = walker::ray_at(scene, {1.5, 1.5, 0}, {0, 0, 1}, x, y);
+        ray.kind = RayKind::shadow;
+        ray.reach = reach;
+        const Visit visit = visit_cell(cells[5], ray, context);
+        EXPECT_EQ(visit.event, reach > 3 ? Visit::Event::hit : Visit::Event::reaches_source) << reach;
+    }
+}
+
+}  // namespace
+}  // namespace raycell

@@ -1,0 +1,230 @@
+// The walk from cell to cell, and what the messages of the links are made of.
+#include "model/ray.hpp"
+
+#include <set>
+
+#include "model/message.hpp"
+#include "shapes.hpp"
+#include "walker.hpp"
+
+namespace raycell {
+namespace {
+
+using property::Random;
+
+struct Step {
+    int x;
+    int y;
+};
+std::vector<Step> cells_of(Ray ray, int x, int y, int hops) {
+    std::vector<Step> cells{{x, y}};
+    for (int i = 0; i < hops; ++i) {
+        const Crossing crossing = next_crossing(ray);
+        x += step_x(crossing.side);
+        y += step_y(crossing.side);
+        cross(ray, crossing);
+        cells.push_back({x, y});
+    }
+    return cells;
+}
+
+TEST(Walk, VisitsEveryCellThatTheRayIsInAndNoOther) {
+    for (const std::uint64_t seed : property::seeds(1, 400)) {
+        SCOPED_TRACE(property::rerun(seed));
+        Random random(seed);
+        const dvec3 origin{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 10)};
+        const dvec3 direction = shapes::sloped_direction(random);
+        Ray ray;
+        ray.position = origin;
+        set_direction(ray, direction);
+        if (direction.x == 0 && direction.y == 0) continue;
+        const auto visited = cells_of(ray, 0, 0, 60);
+        // Brute force: the cells between consecutive crossings of all grid lines.
+        std::vector<double> cuts{0};
+        for (int line = -70; line <= 70; ++line) {
+            if (direction.x != 0) cuts.push_back((line - origin.x) / direction.x);
+            if (direction.y != 0) cuts.push_back((line - origin.y) / direction.y);
+        }
+        std::sort(cuts.begin(), cuts.end());
+        std::vector<Step> expected;
+        for (std::size_t i = 0; i + 1 < cuts.size() && expected.size() < visited.size(); ++i) {
+            if (cuts[i] < 0 || cuts[i + 1] - cuts[i] < 1e-9) continue;
+            const dvec3 p = origin + 0.5 * (cuts[i] + cuts[i + 1]) * direction;
+            expected.push_back({int(std::floor(p.x)), int(std::floor(p.y))});
+        }
+        std::set<std::pair<int, int>> in_walk;
+        for (const Step& step : visited) in_walk.insert({step.x, step.y});
+        for (std::size_t i = 0; i < expected.size() / 2; ++i) {
+            EXPECT_TRUE(in_walk.count({expected[i].x, expected[i].y})) << expected[i].x << ", " << expected[i].y;
+        }
+        // A walk only adds a cell where the ray passes a corner: one step off the brute force.
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < visited.size() && next < expected.size(); ++i) {
+            if (visited[i].x == expected[next].x && visited[i].y == expected[next].y) {
+                ++next;
+            } else {
+                ASSERT_GT(i, 0u);
+                EXPECT_EQ(std::abs(visited[i].x - visited[i - 1].x) + std::abs(visited[i].y - visited[i - 1].y), 1);
+            }
+        }
+        EXPECT_GE(next + 3, expected.size());
+    }
+}
+
+TEST(Walk, PositionPlusCellIsOriginPlusDistanceAfterAThousandHops) {
+    for (const std::uint64_t seed : property::seeds(1000, 300)) {
+        SCOPED_TRACE(property::rerun(seed));
+        Random random(seed);
+        const dvec3 origin{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 10)};
+        const dvec3 direction = shapes::sloped_direction(random);
+        Ray ray;
+        ray.position = origin;
+        ray.reach = 1e9;
+        set_direction(ray, direction);
+        if (direction.x == 0 && direction.y == 0) continue;
+        int x = 0;
+        int y = 0;
+        double t = 0;
+        for (int hop = 0; hop < 1000; ++hop) {
+            const Crossing crossing = next_crossing(ray);
+            ASSERT_GE(crossing.t, 0);
+            x += step_x(crossing.side);
+            y += step_y(crossing.side);
+            t += crossing.t;
+            cross(ray, crossing);
+            ASSERT_GE(ray.position.x, 0);
+            ASSERT_LE(ray.position.x, 1);
+            ASSERT_GE(ray.position.y, 0);
+            ASSERT_LE(ray.position.y, 1);
+            ASSERT_FALSE(ray.fresh);
+        }
+        const dvec3 expected = origin + t * direction;
+        EXPECT_NEAR(x + ray.position.x, expected.x, 1e-9);
+        EXPECT_NEAR(y + ray.position.y, expected.y, 1e-9);
+        EXPECT_NEAR(ray.position.z, expected.z, 1e-9 * std::max(1.0, std::abs(expected.z)));
+        EXPECT_NEAR(1e9 - ray.reach, t, 1e-4);
+    }
+}
+
+TEST(Walk, AnAxialRayNeverCrosses) {
+    Ray ray;
+    ray.position = {0.5, 0.5, 3};
+    for (const dvec3 direction : {dvec3(0, 0, 1), dvec3(0, 0, -1), dvec3(1e-13, -1e-13, 1)}) {
+        set_direction(ray, direction);
+        EXPECT_EQ(next_crossing(ray).t, std::numeric_limits<double>::infinity());
+        EXPECT_EQ(border_crossing(ray).side, Side::east);
+        const dvec3 before = ray.position;
+        cross(ray, border_crossing(ray));
+        EXPECT_EQ(ray.position, before);
+        EXPECT_EQ(ray.direction.x, 0);
+    }
+}
+
+TEST(Walk, ThroughCornersItTakesXFirstAndLosesNoGround) {
+    for (const double sx : {1.0, -1.0}) {
+        for (const double sy : {1.0, -1.0}) {
+            Ray ray;
+            ray.position = {0.5, 0.5, 0};
+            set_direction(ray, glm::normalize(dvec3(sx, sy, 0.5)));
+            const auto cells = cells_of(ray, 0, 0, 20);
+            for (int i = 0; i <= 20; ++i) {
+                EXPECT_EQ(cells[std::size_t(i)].x, int(sx) * ((i + 1) / 2));
+                EXPECT_EQ(cells[std::size_t(i)].y, int(sy) * (i / 2));
+            }
+        }
+    }
+}
+
+TEST(Messages, TakeTheWholeCyclesThatTheirBitsNeed) {
+    EXPECT_EQ(link_cycles(1, 20), 1);
+    EXPECT_EQ(link_cycles(20, 20), 1);
+    EXPECT_EQ(link_cycles(21, 20), 2);
+    EXPECT_EQ(link_cycles(219, 20), 11);
+    EXPECT_EQ(link_cycles(219, 1), 219);
+    EXPECT_EQ(link_cycles(219, 1000), 1);
+}
+
+TEST(Messages, HaveTheBitsOfTheirFields) {
+    PictureSettings picture;
+    MachineSettings machine;
+    picture.width = 128;
+    picture.height = 64;
+    machine.ray_store = 8;
+    const MessageBits bits = message_bits(picture, machine);
+    const int address = 7 + 6 + 3 + 1 + 6;  // home, slot, child
+    EXPECT_EQ(bits.ray, 3 + 9 * 20 + 20 + 6 + address + 3);
+    EXPECT_EQ(bits.verdict, 3 + address);
+    EXPECT_EQ(bits.intensity, 3 + 3 * 20 + address);
+    EXPECT_LE(bits.shadow_ray, bits.ray);
+    EXPECT_EQ(bits.setup(2) - bits.setup(0), 2 * 6 * 20);
+    // Each grows with the word.
+    machine.word_bits = 24;
+    const MessageBits wider = message_bits(picture, machine);
+    EXPECT_EQ(wider.ray - bits.ray, 9 * 4);
+    EXPECT_EQ(wider.verdict, bits.verdict);
+    EXPECT_GT(wider.span, bits.span);
+}
+
+TEST(Messages, AnAnswerGoesWhereItsRayCameFrom) {
+    Ray ray;
+    ray.id = 77;
+    ray.slot = 5;
+    ray.home_x = 12;
+    ray.home_y = 34;
+    ray.child = 1;
+    ray.kind = RayKind::refracted;
+    const Answer answer = answer_to(ray, Answer::Kind::postponed);
+    EXPECT_EQ(answer.id, 77u);
+    EXPECT_EQ(answer.slot, 5u);
+    EXPECT_EQ(answer.home_x, 12);
+    EXPECT_EQ(answer.home_y, 34);
+    EXPECT_EQ(answer.child, 1);
+    EXPECT_EQ(answer.ray_kind, RayKind::refracted);
+    EXPECT_EQ(answer.kind, Answer::Kind::postponed);
+}
+
+/// Ray classes that rays put on a link in this direction can have, found by sending rays over it.
+std::set<int> classes_seen(Networks networks, Side side) {
+    const BufferClasses classes = buffer_classes(networks);
+    std::set<int> seen;
+    Random random(1);
+    for (int i = 0; i < 2000; ++i) {
+        Ray ray;
+        ray.position = {random.uniform(0, 1), random.uniform(0, 1), 1};
+        set_direction(ray, shapes::sloped_direction(random));
+        const bool axial = ray.inverse_x == 0 && ray.inverse_y == 0;
+        const Crossing crossing = axial ? border_crossing(ray) : next_crossing(ray);
+        if (crossing.side == side) seen.insert(classes.ray(ray));
+    }
+    return seen;
+}
+
+TEST(BufferClasses, ALinkHasABufferForJustTheRaysThatCrossIt) {
+    for (const Networks networks : {Networks::shared, Networks::split, Networks::half, Networks::quadrant}) {
+        const BufferClasses classes = buffer_classes(networks);
+        for (const Side side : {Side::east, Side::south, Side::west, Side::north}) {
+            const bool horizontal = side == Side::east || side == Side::west;
+            const auto seen = classes_seen(networks, side);
+            const std::size_t expected = networks == Networks::half ? (horizontal ? 1 : 2)
+                                         : networks == Networks::quadrant ? 2 : 1;
+            EXPECT_EQ(seen.size(), expected);
+            for (int index = 0; index < classes.count; ++index) {
+                const bool answers = index == classes.answer && networks != Networks::shared;
+                EXPECT_EQ(classes.used(index, horizontal, side), answers || seen.count(index) == 1)
+                    << "networks " << int(networks) << ", class " << index << ", side " << int(side);
+            }
+        }
+    }
+}
+
+TEST(BufferClasses, ARayWithoutXGoesWithThePositiveHalf) {
+    Ray ray;
+    set_direction(ray, {0, -1, 0});
+    EXPECT_EQ(buffer_classes(Networks::half).ray(ray), 0);
+    EXPECT_EQ(buffer_classes(Networks::quadrant).ray(ray), 2);
+    set_direction(ray, {-1e-13, 1, 0});  // too small to cross: no western ray
+    EXPECT_EQ(buffer_classes(Networks::half).ray(ray), 0);
+}
+
+}  // namespace
+}  // namespace raycell

@@ -1,0 +1,144 @@
+// The timed and the untimed machine give the same picture, bit for bit (invariant 1), seen from the outside.
+#include "program.hpp"
+
+namespace raycell::system_test {
+namespace {
+
+/// Renders with both engines and compares what must not depend on time.
+void expect_equal_engines(const Workshop& workshop, const fs::path& scene, const Words& words) {
+    std::string line;
+    for (const std::string& word : words) line += " " + word;
+    SCOPED_TRACE(scene.filename().string() + line);
+    const Json timed = workshop.report(scene, words, 0, "timed");
+    const Json untimed = workshop.report(scene, joined(words, {"--engine", "untimed"}), 0, "untimed");
+    if (timed.is_null() || untimed.is_null()) return;
+    EXPECT_EQ(image(timed), image(untimed));
+    EXPECT_EQ(timed.at("rays"), untimed.at("rays"));
+    EXPECT_EQ(timed.at("voxels"), untimed.at("voxels"));
+    if (timed.at("deadlock").at("postponed") == 0) {
+        // A postponed ray crosses its links again.
+        EXPECT_EQ(timed.at("hops").at("ray"), untimed.at("hops").at("ray"));
+        EXPECT_EQ(timed.at("hops").at("return"), untimed.at("hops").at("return"));
+    }
+}
+
+const std::string own_scenes[] = {"cornell.nff", "facing_mirrors.nff", "still_life.nff"};
+
+// ---- options, on the project's own scenes
+
+class TimedEqualsUntimed : public ::testing::TestWithParam<Words> {};
+
+TEST_P(TimedEqualsUntimed, OnOwnScenes) {
+    const Workshop workshop;
+    for (const std::string& scene : own_scenes) expect_equal_engines(workshop, own_scene(scene), GetParam());
+}
+
+std::string name_of_words(const ::testing::TestParamInfo<Words>& test) {
+    std::string name;
+    for (const std::string& word : test.param) {
+        for (const char c : word) {
+            if (std::isalnum(static_cast<unsigned char>(c))) name += c;
+        }
+        name += '_';
+    }
+    name.pop_back();
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    With, TimedEqualsUntimed,
+    ::testing::Values(Words{"--cells", "48x32"}, Words{"--cells", "32x48"}, Words{"--cells", "40x1"},
+                      Words{"--cells", "1x40"}, Words{"--cells", "1x1"},
+                      Words{"--cells", "32x32", "--hit", "mask"}, Words{"--cells", "32x32", "--hit", "plane"},
+                      Words{"--cells", "32x32", "--hit", "interval"}, Words{"--cells", "32x32", "--hit", "depth"},
+                      Words{"--cells", "32x32", "--hit", "depth", "--depth", "1"},
+                      Words{"--cells", "32x32", "--depth", "65536"},
+                      Words{"--cells", "32x32", "--normals", "voxel"},
+                      Words{"--cells", "32x32", "--shadows", "precast"},
+                      Words{"--cells", "32x32", "--shadows", "memo"},
+                      Words{"--cells", "32x32", "--shadows", "memo", "--hit", "interval", "--exterior", "none"},
+                      Words{"--cells", "32x32", "--exterior", "none"},
+                      Words{"--cells", "32x32", "--viewer", "infinity"},
+                      Words{"--cells", "32x32", "--max-depth", "0"},
+                      Words{"--cells", "32x32", "--max-depth", "7", "--min-weight", "0"},
+                      Words{"--cells", "32x32", "--normal-offset", "0.05"}),
+    name_of_words);
+
+class LoadedEqualsUntimed : public ::testing::TestWithParam<Words> {};
+
+TEST_P(LoadedEqualsUntimed, OnOwnScenes) {
+    const Workshop workshop;
+    for (const std::string& scene : own_scenes) {
+        expect_equal_engines(workshop, own_scene(scene), joined({"--cells", "32x32", "--stage", "load"}, GetParam()));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(With, LoadedEqualsUntimed,
+                         ::testing::Values(Words{"--display", "phong"}, Words{"--display", "gouraud"},
+                                           Words{"--normals", "voxel", "--hit", "plane"},
+                                           Words{"--exterior", "none"}),
+                         name_of_words);
+
+TEST(Engines, AMachineWithoutRoomForItsVoxelsStillGivesTheUntimedPicture) {
+    const Workshop workshop;
+    const Words words = {"--cells", "32x32", "--voxel-capacity", "2"};
+    const Json timed = workshop.report(own_scene("still_life.nff"), words, 4);
+    const Json untimed = workshop.report(own_scene("still_life.nff"), joined(words, {"--engine", "untimed"}), 4, "b");
+    EXPECT_EQ(image(timed), image(untimed));
+    EXPECT_EQ(timed.at("voxels"), untimed.at("voxels"));
+}
+
+TEST(Engines, BitsAskedForWhenFirstHitGiveThePictureOfBitsCastBefore) {
+    const Workshop workshop;
+    for (const std::string& scene : own_scenes) {
+        for (const std::string engine : {"timed", "untimed"}) {
+            for (const std::string hit : {"edge", "interval"}) {
+                SCOPED_TRACE(scene + " " + engine + " " + hit);
+                const Words words = {"--cells", "32x32", "--engine", engine, "--hit", hit};
+                const Json memo = workshop.report(own_scene(scene), joined(words, {"--shadows", "memo"}));
+                const Json precast = workshop.report(own_scene(scene), joined(words, {"--shadows", "precast"}), 0, "b");
+                EXPECT_EQ(image(memo), image(precast));
+            }
+        }
+    }
+}
+
+// ---- every scene, as it is
+
+std::vector<std::string> names_in(const std::string& folder, const std::string& extension) {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(shared_scenes() / folder, ignored)) {
+        if (entry.path().extension() == extension) names.push_back(folder + "/" + entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::vector<std::string> every_shared_scene() {
+    std::vector<std::string> names = names_in("spd", ".nff");
+    const std::vector<std::string> objects = names_in("obj", ".obj");
+    names.insert(names.end(), objects.begin(), objects.end());
+    if (names.empty()) names.push_back("missing");
+    return names;
+}
+
+class EverySharedScene : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EverySharedScene, IsTheSamePictureTimedAndUntimed) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const Workshop workshop;
+    expect_equal_engines(workshop, shared_scenes() / GetParam(), {"--cells", "64x64"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, EverySharedScene, ::testing::ValuesIn(every_shared_scene()),
+                         [](const ::testing::TestParamInfo<std::string>& test) {
+                             std::string name = test.param.substr(test.param.find('/') + 1);
+                             for (char& c : name) {
+                                 if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+                             }
+                             return name;
+                         });
+
+}  // namespace
+}  // namespace raycell::system_test

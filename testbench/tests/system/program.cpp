@@ -1,0 +1,142 @@
+#include "program.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+extern char** environ;
+
+namespace raycell::system_test {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Starts the program in `folder` with its standard streams in files there; returns the child's id.
+pid_t start(const Words& words, const fs::path& folder) {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 1, "stdout.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, "stderr.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    Words all = joined({RAYCELL_PROGRAM}, words);
+    std::vector<char*> arguments;
+    for (std::string& word : all) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    pid_t child = 0;
+    const int error = posix_spawn(&child, RAYCELL_PROGRAM, &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0) throw std::runtime_error(std::string("can't start ") + RAYCELL_PROGRAM);
+    return child;
+}
+
+/// Waits for the child, killing it at the deadline.
+void await(pid_t child, double limit_seconds, Finished& finished) {
+    const auto begin = Clock::now();
+    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+    int status = 0;
+    rusage usage{};
+    while (wait4(child, &status, WNOHANG, &usage) == 0) {
+        if (elapsed() > limit_seconds && !finished.timed_out) {
+            finished.timed_out = true;
+            kill(child, SIGKILL);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    finished.seconds = elapsed();
+    finished.megabytes = double(usage.ru_maxrss) * 1024e-6;  // Linux counts it in kilobytes of 1024
+    if (WIFEXITED(status)) finished.exit_code = WEXITSTATUS(status);
+    if (WIFSIGNALED(status)) finished.signal = WTERMSIG(status);
+}
+
+}  // namespace
+
+std::size_t Finished::error_lines() const {
+    const bool open_end = !err.empty() && err.back() != '\n';
+    return std::size_t(std::count(err.begin(), err.end(), '\n')) + (open_end ? 1 : 0);
+}
+
+Workshop::Workshop() {
+    std::string name = (fs::temp_directory_path() / "raycell_system_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("can't make a folder " + name);
+    path_ = name;
+    fs::create_directory(path_ / "results");
+}
+
+Workshop::~Workshop() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+}
+
+Finished Workshop::run(const Words& words, double limit_seconds) const {
+    Finished finished;
+    await(start(words, path_), limit_seconds, finished);
+    finished.out = read_text(path_ / "stdout.txt");
+    finished.err = read_text(path_ / "stderr.txt");
+    return finished;
+}
+
+Finished Workshop::render(const fs::path& scene, const Words& words, const std::string& name,
+                          double limit_seconds) const {
+    return run(joined({"render", scene.string(), "--quiet", "-o", "results/" + name}, words), limit_seconds);
+}
+
+Json Workshop::report(const fs::path& scene, const Words& words, int exit_code, const std::string& name) const {
+    const Finished finished = render(scene, words, name);
+    std::string command = "raycell render " + scene.string();
+    for (const std::string& word : words) command += " " + word;
+    SCOPED_TRACE(command);
+    EXPECT_FALSE(finished.timed_out);
+    EXPECT_EQ(finished.exit_code, exit_code) << finished.err.substr(0, 2000);
+    if (!fs::exists(result(name + ".json"))) {
+        ADD_FAILURE() << "no report was written";
+        return {};
+    }
+    const Json json = Json::parse(read_text(result(name + ".json")));
+    expect_sound(json);
+    return json;
+}
+
+fs::path Workshop::write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+}
+
+std::vector<std::string> Workshop::results() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(path_ / "results")) names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::string read_text(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+Words joined(Words first, const Words& second) {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+}
+
+fs::path own_scene(const std::string& name) { return fs::path(RAYCELL_SOURCE_DIR) / "scenes" / name; }
+
+fs::path shared_scenes() {
+    return (fs::path(RAYCELL_SOURCE_DIR) / ".." / "shared" / "scenes").lexically_normal();
+}
+
+}  // namespace raycell::system_test

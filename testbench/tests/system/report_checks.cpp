@@ -1,0 +1,148 @@
+// What must hold in every report.
+#include "program.hpp"
+
+namespace raycell::system_test {
+
+namespace {
+
+/// The keys that users' scripts rely on.
+const char* const keys[] = {
+    "/verdict",
+    "/config",
+    "/cycles/load",
+    "/cycles/precast",
+    "/cycles/trace",
+    "/cycles/total",
+    "/simulated_seconds",
+    "/stages/geometry/items",
+    "/stages/geometry/busy_cycles",
+    "/stages/geometry/utilisation",
+    "/stages/precomputation/items",
+    "/stages/precomputation/busy_cycles",
+    "/stages/precomputation/utilisation",
+    "/stages/distribution/items",
+    "/stages/distribution/busy_cycles",
+    "/stages/distribution/utilisation",
+    "/hops/load",
+    "/hops/ray",
+    "/hops/return",
+    "/rays/primary",
+    "/rays/reflected",
+    "/rays/refracted",
+    "/rays/shadow",
+    "/rays/precast",
+    "/rays/lost",
+    "/rays/exterior",
+    "/voxels/stored",
+    "/voxels/max_per_cell",
+    "/voxels/mean_per_occupied_cell",
+    "/voxels/bits_each",
+    "/voxels/overflowed",
+    "/ray_store/capacity",
+    "/ray_store/peak",
+    "/ray_store/mean",
+    "/buffers/depth",
+    "/buffers/peak",
+    "/buffers/mean",
+    "/deadlock/detected",
+    "/deadlock/postponed",
+    "/deadlock/report",
+    "/model/wall_seconds/build",
+    "/model/wall_seconds/load",
+    "/model/wall_seconds/precast",
+    "/model/wall_seconds/trace",
+    "/model/hops_per_second",
+    "/model/peak_memory_bytes",
+    "/model/bytes_per_cell",
+    "/hash/image",
+    "/hash/schedule",
+};
+
+bool has_every_key(const Json& report) {
+    bool all = true;
+    for (const char* key : keys) {
+        const bool present = report.contains(Json::json_pointer(key));
+        EXPECT_TRUE(present) << "the report lacks " << key;
+        all = all && present;
+    }
+    return all;
+}
+
+std::int64_t count(const Json& block, const char* name) { return block.at(name).get<std::int64_t>(); }
+
+void expect_messages_conserved(const Json& report, bool ended, bool timed) {
+    const Json& rays = report.at("messages").at("rays");
+    const Json& answers = report.at("messages").at("answers");
+    const Json& loads = report.at("messages").at("load");
+    const std::int64_t on_their_way =
+        count(rays, "sent") - count(rays, "answered") - count(rays, "silent") - count(rays, "destroyed");
+    const std::int64_t answers_on_their_way = count(answers, "sent") - count(answers, "delivered");
+    const std::int64_t loads_on_their_way = count(loads, "sent") - count(loads, "delivered");
+    EXPECT_GE(on_their_way, 0) << rays;
+    EXPECT_GE(answers_on_their_way, 0) << answers;
+    EXPECT_GE(loads_on_their_way, 0) << loads;
+    EXPECT_EQ(count(report.at("deadlock"), "postponed"), count(rays, "destroyed"));
+    if (!ended) return;
+    EXPECT_EQ(on_their_way, 0) << rays;
+    EXPECT_EQ(answers_on_their_way, 0) << answers;
+    EXPECT_EQ(loads_on_their_way, 0) << loads;
+    if (!timed) return;
+    const Json& kinds = report.at("rays");
+    EXPECT_EQ(count(rays, "answered") + count(rays, "silent"),
+              count(kinds, "primary") + count(kinds, "reflected") + count(kinds, "refracted") +
+                  count(kinds, "shadow") + count(kinds, "precast"))
+        << "every ray has an end: " << rays << kinds;
+}
+
+void expect_share(const Json& value) {
+    EXPECT_GE(value.get<double>(), 0) << value;
+    EXPECT_LE(value.get<double>(), 1) << value;
+}
+
+void expect_bounds(const Json& report) {
+    const Json& cycles = report.at("cycles");
+    EXPECT_EQ(count(cycles, "total"), count(cycles, "load") + count(cycles, "precast") + count(cycles, "trace"));
+    EXPECT_NEAR(report.at("simulated_seconds").get<double>(),
+                double(count(cycles, "total")) / (report.at("config").at("clock-mhz").get<double>() * 1e6), 1e-9);
+    for (const auto& stage : report.at("stages")) expect_share(stage.at("utilisation"));
+    const Json& store = report.at("ray_store");
+    EXPECT_LE(count(store, "peak"), count(store, "capacity"));
+    EXPECT_LE(store.at("mean").get<double>(), store.at("capacity").get<double>());
+    for (const auto& peak : report.at("buffers").at("peak")) {
+        EXPECT_LE(peak.get<std::int64_t>(), count(report.at("buffers"), "depth"));
+    }
+    EXPECT_LE(count(report.at("voxels"), "max_per_cell"), count(report.at("voxels"), "stored"));
+    EXPECT_EQ(report.at("hash").at("image").get<std::string>().size(), 16u);
+    EXPECT_EQ(report.at("hash").at("schedule").get<std::string>().size(), 16u);
+}
+
+}  // namespace
+
+void expect_sound(const Json& report) {
+    if (!has_every_key(report)) return;
+    const std::string verdict = report.at("verdict");
+    EXPECT_TRUE(verdict == "completed" || verdict == "deadlock" || verdict == "livelock" ||
+                verdict == "cycle_limit" || verdict == "capacity")
+        << verdict;
+    const bool ended = verdict == "completed" || verdict == "capacity";
+    const bool timed = report.at("config").at("engine") == "timed";
+    expect_messages_conserved(report, ended, timed);
+    expect_bounds(report);
+    EXPECT_EQ(report.at("deadlock").at("detected").get<bool>(), verdict == "deadlock");
+    const bool stuck = verdict == "deadlock" || verdict == "livelock";
+    if (stuck) {
+        EXPECT_FALSE(report.at("deadlock").at("report").empty()) << "a stuck machine says where";
+    }
+    if (ended) {
+        EXPECT_TRUE(report.at("deadlock").at("report").empty());
+    }
+    const std::int64_t overflowed = count(report.at("voxels"), "overflowed");
+    if (verdict == "capacity") {
+        EXPECT_GT(overflowed, 0);
+    }
+    if (verdict == "completed") {
+        EXPECT_EQ(overflowed, 0) << "what did not fit is named in the verdict";
+    }
+}
+
+}  // namespace raycell::system_test

@@ -1,0 +1,251 @@
+// Wrong words on the command line and in configuration files: exit code 1, one clear message, no file.
+#include <algorithm>
+
+#include "program.hpp"
+
+namespace raycell::system_test {
+namespace {
+
+/// One message; the hint at --help may follow it.
+void expect_refused(const Workshop& workshop, const Finished& finished, const std::string& part) {
+    EXPECT_EQ(finished.exit_code, 1) << finished.err;
+    EXPECT_EQ(finished.signal, 0);
+    EXPECT_EQ(finished.out, "");
+    std::string message = finished.err;
+    const std::string hint = "Run with --help for more information.\n";
+    const std::size_t at = message.find(hint);
+    if (at != std::string::npos) message.erase(at);
+    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1) << finished.err;
+    EXPECT_NE(message.find(part), std::string::npos) << "no '" << part << "' in: " << finished.err;
+    EXPECT_EQ(workshop.results(), std::vector<std::string>());
+}
+
+struct Wrong {
+    Words words;
+    std::string part;  ///< of the message
+};
+
+void expect_each_refused(const std::vector<Wrong>& wrongs) {
+    const Workshop workshop;
+    for (const Wrong& wrong : wrongs) {
+        std::string line;
+        for (const std::string& word : wrong.words) line += " '" + word + "'";
+        SCOPED_TRACE("raycell render SCENE" + line);
+        expect_refused(workshop, workshop.render(own_scene("cornell.nff"), joined({"--cells", "4x4"}, wrong.words)),
+                       wrong.part);
+    }
+}
+
+void expect_values_refused(const std::string& option, const Words& values) {
+    std::vector<Wrong> wrongs;
+    for (const std::string& value : values) wrongs.push_back({{"--" + option, value}, "--" + option + ": "});
+    expect_each_refused(wrongs);
+}
+
+const Words no_numbers = {"", "abc", "nan", "inf", "-inf", "1,5", "5x"};
+
+TEST(Usage, UnknownOptionsAreNamed) {
+    expect_each_refused({{{"--nonsense"}, "--nonsense"},
+                         {{"--nonsense=3"}, "--nonsense"},
+                         {{"-z"}, "-z"},
+                         {{"--cel", "4x4"}, "--cel"},
+                         {{"--Hit", "edge"}, "--Hit"},
+                         {{"second.nff"}, "second.nff"}});
+}
+
+TEST(Usage, AnUnknownCommandIsNamed) {
+    const Workshop workshop;
+    expect_refused(workshop, workshop.run({"rendr", own_scene("cornell.nff").string()}), "rendr");
+}
+
+TEST(Usage, NoCommandIsAnErrorThatNamesWhatIsMissing) {
+    const Workshop workshop;
+    expect_refused(workshop, workshop.run({}), "subcommand");
+}
+
+TEST(Usage, SizesOutOfRangeAreRefused) {
+    expect_values_refused("cells", {"0x0", "5000x5000", "4097x1", "1x4097", "0x8", "8x0", "-1", "-8x8", "8x-8", "8x",
+                                    "x8", "8", "8x8x8", "8.5x8", "8X8", "8 x 8", "nan", "nanxnan", "inf", "",
+                                    "99999999999x1", "4294967297x1"});
+}
+
+TEST(Usage, WholeNumbersOutOfRangeAreRefused) {
+    const std::vector<std::pair<std::string, Words>> options = {{"depth", {"0", "-1", "65537"}},
+                                                                {"max-depth", {"-1", "63"}},
+                                                                {"word-bits", {"7", "33", "-20"}},
+                                                                {"ray-store", {"0", "-1", "1025"}},
+                                                                {"buffer", {"0", "-1", "1025"}},
+                                                                {"link-bits", {"0", "-1", "4097"}},
+                                                                {"max-cycles", {"-1", "4611686018427387905"}},
+                                                                {"voxel-capacity", {"-1", "1000001"}},
+                                                                {"exterior-processors", {"0", "-1", "1000001"}},
+                                                                {"exterior-latency", {"0", "-1", "1000000001"}},
+                                                                {"seed", {"-1", "9223372036854775808"}}};
+    for (const auto& [option, values] : options) {
+        expect_values_refused(option, values);
+        expect_values_refused(option, {"1.5", "1e3", "99999999999999999999", "4294967297.0"});
+    }
+    expect_values_refused("depth", no_numbers);
+    expect_values_refused("seed", no_numbers);
+}
+
+TEST(Usage, RealNumbersOutOfRangeAreRefused) {
+    const std::vector<std::pair<std::string, Words>> options = {{"chord-error", {"0", "-0.1", "1001", "1e-4"}},
+                                                                {"min-weight", {"-0.1", "1.1", "-1e-9"}},
+                                                                {"clock-mhz", {"0", "-20", "1e6", "1e-4"}},
+                                                                {"normal-offset", {"-1e-9", "1.5"}}};
+    for (const auto& [option, values] : options) {
+        expect_values_refused(option, values);
+        expect_values_refused(option, no_numbers);
+        expect_values_refused(option, {"1e999", "-1e999"});
+    }
+}
+
+TEST(Usage, WordsThatNoChoiceOffersAreRefused) {
+    const Words options = {"viewer",  "stage",    "display",    "engine",   "hit",      "normals",
+                           "shadows", "exterior", "arithmetic", "networks", "recovery", "slots"};
+    for (const std::string& option : options) expect_values_refused(option, {"foo", "", "EDGE", "0", "nan"});
+    expect_values_refused("hit", {"edg", "edges", "edge ", "edge|mask"});
+    expect_values_refused("arithmetic", {"float", "double"});
+}
+
+TEST(Usage, CostsThatAreNoneAreRefused) {
+    expect_values_refused("cost", {"walk_step", "walk_step=", "walk_step=-1", "walk_step=0", "walk_step=nan",
+                                   "walk_step=1.5", "walk_step=99999999999", "walk_step=3x", "foo=1", "=1", "", "="});
+}
+
+TEST(Usage, AnOptionWithoutItsValueIsRefused) {
+    for (const std::string option : {"--hit", "--depth", "--cells", "--config", "--cost"}) {
+        expect_each_refused({{{option}, option}});
+    }
+}
+
+TEST(Usage, NumbersWithLeadingZerosAreDecimal) {
+    // Nobody who writes 010 means eight.
+    const Workshop workshop;
+    const Finished finished = workshop.render(own_scene("cornell.nff"), {"--cells", "4x4", "--depth", "010"});
+    if (finished.exit_code == 1) return;
+    EXPECT_EQ(finished.exit_code, 0);
+    EXPECT_EQ(Json::parse(read_text(workshop.result("a.json"))).at("config").at("depth"), 10);
+}
+
+TEST(Usage, FilesThatAreNotThereAreNamed) {
+    const Workshop workshop;
+    expect_refused(workshop, workshop.render("none.nff", {}), "none.nff");
+    expect_refused(workshop, workshop.render(".", {}), "directory");
+    expect_refused(workshop, workshop.render("", {}), "no scene given");
+    expect_refused(workshop, workshop.run({"render", "-o", "results/a"}), "no scene given");
+    expect_refused(workshop, workshop.run({"truth", "none.nff", "-o", "results/a"}), "none.nff");
+    expect_refused(workshop, workshop.run({"compare", "none.exr", "none.exr"}), "none.exr");
+    expect_refused(workshop, workshop.run({"compare", "none.exr"}), "truth");
+    expect_each_refused({{{"--view", "none.nff"}, "none.nff"}, {{"--config", "none.toml"}, "none.toml"}});
+}
+
+TEST(Usage, OutputWhereNoneCanBeIsRefusedBeforeAnyWork) {
+    const Workshop workshop;
+    const std::string scene = own_scene("still_life.nff").string();
+    for (const std::string prefix : {"missing/a", "results/", "", "stdout.txt/a"}) {
+        SCOPED_TRACE("-o '" + prefix + "'");
+        for (const std::string command : {"render", "truth"}) {
+            // So many cells that the work would be noticed.
+            const Finished finished = workshop.run({command, scene, "--cells", "512x512", "-o", prefix}, 30);
+            expect_refused(workshop, finished, "--output " + prefix);
+            if (!sanitized) {
+                EXPECT_LT(finished.seconds, 1);
+            }
+        }
+    }
+}
+
+TEST(Usage, ARunThatCannotWriteOneOfItsFilesLeavesNoneAndRemovesNothing) {
+    const Workshop workshop;
+    for (const std::string suffix : {".exr", ".png", ".cells.csv", ".toml", ".json"}) {
+        SCOPED_TRACE("a folder stands where a" + suffix + " should go");
+        fs::create_directory(workshop.result("a" + suffix));
+        const Finished finished = workshop.render(own_scene("cornell.nff"), {"--cells", "4x4"});
+        EXPECT_EQ(finished.exit_code, 1);
+        EXPECT_EQ(finished.error_lines(), 1u) << finished.err;
+        EXPECT_NE(finished.err.find("a" + suffix), std::string::npos) << finished.err;
+        EXPECT_EQ(workshop.results(), std::vector<std::string>{"a" + suffix});
+        fs::remove_all(workshop.result("a" + suffix));
+    }
+}
+
+TEST(Usage, HelpEndsWellAndNamesUnits) {
+    const Workshop workshop;
+    const std::vector<std::pair<Words, Words>> helps = {
+        {{"--help"}, {"render", "truth", "compare"}},
+        {{"render", "--help"},
+         {"cells", "cycles", "bits", "MHz", "slots", "messages", "levels", "voxels", "generations", "WxH"}},
+        {{"truth", "--help"}, {"cells", "WxH", "generations"}},
+        {{"compare", "--help"}, {"dB", "percent"}}};
+    for (const auto& [words, parts] : helps) {
+        const Finished finished = workshop.run(words);
+        EXPECT_EQ(finished.exit_code, 0);
+        EXPECT_EQ(finished.err, "");
+        for (const std::string& part : parts) EXPECT_NE(finished.out.find(part), std::string::npos) << part;
+    }
+}
+
+// ---- configuration files
+
+void expect_configuration_refused(const std::string& text, const Words& parts) {
+    const Workshop workshop;
+    workshop.write("run.toml", text);
+    SCOPED_TRACE(text.substr(0, 60));
+    const Finished finished =
+        workshop.render(own_scene("cornell.nff"), {"--cells", "4x4", "--config", "run.toml"});
+    for (const std::string& part : parts) expect_refused(workshop, finished, part);
+}
+
+TEST(Configuration, UnknownKeysAreNamedWithTheirFile) {
+    for (const std::string key : {"nonsense", "max_depth", "Depth", "h", "o", "help", "config"}) {
+        expect_configuration_refused(key + " = 1\n", {"run.toml", "'" + key + "'"});
+    }
+    expect_configuration_refused("[render]\ndepth = 5\n", {"run.toml", "render.depth"});
+    expect_configuration_refused("depth = 5\n[machine]\nbuffer = 2\n", {"run.toml", "machine.buffer"});
+}
+
+TEST(Configuration, WrongValuesAreNamedWithTheirFile) {
+    // Otherwise a user looks for --depth on a command line where it isn't.
+    expect_configuration_refused("depth = 0\n", {"depth: ", "run.toml"});
+    expect_configuration_refused("hit = \"foo\"\n", {"hit: ", "run.toml"});
+    expect_configuration_refused("cells = \"8x\"\n", {"cells: ", "run.toml"});
+    expect_configuration_refused("min-weight = nan\n", {"min-weight: ", "run.toml"});
+    expect_configuration_refused("truth = \"maybe\"\n", {"truth", "run.toml"});
+    expect_configuration_refused("cost = [\"walk_step=1\", \"foo=2\"]\n", {"foo", "run.toml"});
+}
+
+TEST(Configuration, ValuesThatAreNotThereOrTooManyAreRefused) {
+    expect_configuration_refused("depth = [1, 2]\n", {"depth"});
+    expect_configuration_refused("hit = \"\"\n", {"hit"});
+    expect_configuration_refused("depth\n", {"depth"});
+    expect_configuration_refused("= 5\n", {"run.toml"});
+    expect_configuration_refused("depth = 5 6\n", {"depth"});
+}
+
+TEST(Configuration, AFolderIsNoConfiguration) {
+    const Workshop workshop;
+    expect_refused(workshop, workshop.render(own_scene("cornell.nff"), {"--cells", "4x4", "--config", "."}), ".: ");
+}
+
+TEST(Configuration, GarbageIsNeverPrintedRaw) {
+    const Workshop workshop;
+    for (const std::string& text : {std::string("\0\1\2\3 = 5\n", 9), std::string("\x1b[31mred\x1b[0m = 1\n"),
+                                    std::string("\xff\xfe\x80 = 1\n"), std::string(3000, 'a') + " = 1\n"}) {
+        workshop.write("run.toml", text);
+        const Finished finished =
+            workshop.render(own_scene("cornell.nff"), {"--cells", "4x4", "--config", "run.toml"});
+        expect_refused(workshop, finished, "run.toml");
+        EXPECT_LT(finished.err.size(), 400u);
+        for (const char c : finished.err) {
+            if (c != '\n' && (c < ' ' || c > '~')) {
+                ADD_FAILURE() << "byte " << int(static_cast<unsigned char>(c)) << " in the message";
+                break;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace raycell::system_test

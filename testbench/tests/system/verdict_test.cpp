@@ -1,0 +1,215 @@
+// Every run ends with a stated verdict, its exit code, and its files.
+#include <cmath>
+
+#include "program.hpp"
+#include "testbench/raycell/picture_file.hpp"
+
+namespace raycell::system_test {
+namespace {
+
+constexpr double soon = 30;  ///< seconds in which a stuck machine must have been found out; measured: 3 at most
+
+/// Runs to `verdict` and returns the report.
+Json expect_verdict(const Workshop& workshop, const std::string& scene, const Words& words,
+                    const std::string& verdict, int exit_code) {
+    const Finished finished = workshop.render(own_scene(scene), joined({"--cells", "32x32"}, words), "a", soon);
+    std::string line = scene;
+    for (const std::string& word : words) line += " " + word;
+    SCOPED_TRACE(line);
+    EXPECT_FALSE(finished.timed_out) << "it hangs";
+    EXPECT_EQ(finished.exit_code, exit_code) << finished.err.substr(0, 2000);
+    EXPECT_NE(finished.err.find("verdict " + verdict), std::string::npos) << finished.err.substr(0, 2000);
+    EXPECT_LE(finished.error_lines(), 20u) << "the rest of a long report belongs into the JSON";
+    EXPECT_EQ(workshop.results(),
+              (std::vector<std::string>{"a.cells.csv", "a.exr", "a.json", "a.png", "a.toml"}))
+        << "what a machine did until it stopped is of use";
+    if (!fs::exists(workshop.result("a.json"))) return {};
+    const Json report = Json::parse(read_text(workshop.result("a.json")));
+    expect_sound(report);
+    EXPECT_EQ(report.at("verdict"), verdict);
+    for (const Pixel& pixel : read_exr(workshop.result("a.exr")).pixels) {
+        if (!std::isfinite(pixel.colour.r + pixel.colour.g + pixel.colour.b)) {
+            ADD_FAILURE() << "a pixel is no number";
+            break;
+        }
+    }
+    return report;
+}
+
+TEST(Verdict, OneNetworkForAllDeadlocksOnMirrors) {
+    const Workshop workshop;
+    const Json report = expect_verdict(workshop, "facing_mirrors.nff", {"--networks", "shared"}, "deadlock", 3);
+    EXPECT_GT(report.at("deadlock").at("report").size(), 10u);
+    for (const auto& line : report.at("deadlock").at("report")) {
+        EXPECT_NE(line.get<std::string>().find("cell ("), std::string::npos) << line;
+    }
+}
+
+TEST(Verdict, RaysApartFromAnswersDeadlockOnMirrors) {
+    const Workshop workshop;
+    expect_verdict(workshop, "facing_mirrors.nff", {"--networks", "split"}, "deadlock", 3);
+}
+
+TEST(Verdict, ShadowBitsCastOverOneNetworkDeadlock) {
+    const Workshop workshop;
+    const Json report =
+        expect_verdict(workshop, "still_life.nff", {"--networks", "shared", "--shadows", "precast"}, "deadlock", 3);
+    EXPECT_EQ(report.at("cycles").at("trace"), 0) << "it never came to tracing";
+}
+
+TEST(Verdict, AStoreOfOneWithoutRecoveryDeadlocks) {
+    const Workshop workshop;
+    const Json report = expect_verdict(workshop, "facing_mirrors.nff", {"--recovery", "none", "--ray-store", "1"},
+                                       "deadlock", 3);
+    EXPECT_EQ(report.at("deadlock").at("postponed"), 0);
+}
+
+TEST(Verdict, MessagesThatCanNeverMoveAgainAreADeadlockWhileOthersArePostponed) {
+    // Some trees go on being postponed for ever; the ring of full buffers is a knot all the same.
+    const Workshop workshop;
+    expect_verdict(workshop, "still_life.nff", {"--networks", "shared"}, "deadlock", 3);
+}
+
+TEST(Verdict, AStoreOfOneIsALivelockWhereTreesComeBackToTheirCells) {
+    const Workshop workshop;
+    for (const std::string slots : {"reserved", "free"}) {
+        const Json report = expect_verdict(workshop, "facing_mirrors.nff", {"--ray-store", "1", "--slots", slots},
+                                           "livelock", 3);
+        EXPECT_GT(report.at("deadlock").at("postponed").get<int>(), 0);
+    }
+}
+
+TEST(Verdict, AsManySlotsAsGenerationsAlwaysComeToAnEnd) {
+    const Workshop workshop;
+    for (const std::string scene : {"cornell.nff", "facing_mirrors.nff", "still_life.nff"}) {
+        for (const int depth : {0, 1, 2, 4, 7}) {
+            for (const std::string networks : {"half", "quadrant"}) {
+                SCOPED_TRACE(networks);
+                // One more than max_depth, since the last generation waits for its shadow rays.
+                const Json report = workshop.report(
+                    own_scene(scene), {"--cells", "24x24", "--max-depth", std::to_string(depth), "--ray-store",
+                                       std::to_string(depth + 1), "--networks", networks});
+                if (!report.is_null()) {
+                    EXPECT_EQ(report.at("verdict"), "completed") << scene << " " << depth;
+                }
+            }
+        }
+    }
+}
+
+TEST(Verdict, AnArrayOfOneRowOrColumnOrCellComesToAnEnd) {
+    const Workshop workshop;
+    for (const std::string cells : {"1x1", "2x1", "1x2", "100x1", "1x100"}) {
+        for (const std::string shadows : {"per-hit", "precast", "memo"}) {
+            const Json report =
+                workshop.report(own_scene("still_life.nff"), {"--cells", cells, "--shadows", shadows});
+            if (!report.is_null()) {
+                EXPECT_EQ(report.at("verdict"), "completed");
+            }
+        }
+    }
+}
+
+TEST(Verdict, ALimitOfCyclesHoldsToTheCycleInEveryPhase) {
+    const Workshop workshop;
+    const Words shadows = {"--shadows", "precast"};
+    const Json whole = workshop.report(own_scene("cornell.nff"), joined({"--cells", "32x32"}, shadows));
+    const auto load = whole.at("cycles").at("load").get<std::int64_t>();
+    const auto precast = whole.at("cycles").at("precast").get<std::int64_t>();
+    const auto trace = whole.at("cycles").at("trace").get<std::int64_t>();
+    ASSERT_GT(precast, 1);
+    for (const std::int64_t limit : {std::int64_t(1), load / 2, load + precast / 2, load + precast + trace / 2,
+                                     load + precast + trace - 1}) {
+        const Json report = expect_verdict(
+            workshop, "cornell.nff", joined(shadows, {"--max-cycles", std::to_string(limit)}), "cycle_limit", 4);
+        EXPECT_EQ(report.at("cycles").at("total"), limit);
+    }
+    const Json enough = workshop.report(
+        own_scene("cornell.nff"),
+        joined({"--cells", "32x32", "--max-cycles", std::to_string(load + precast + trace + 1)}, shadows));
+    EXPECT_EQ(enough.at("verdict"), "completed");
+    EXPECT_EQ(image(enough), image(whole));
+}
+
+TEST(Verdict, VoxelsThatDoNotFitAreCountedAndNamed) {
+    const Workshop workshop;
+    const Json whole = workshop.report(own_scene("still_life.nff"), {"--cells", "32x32"});
+    for (const std::string engine : {"timed", "untimed"}) {
+        const Json report = expect_verdict(workshop, "still_life.nff",
+                                           {"--voxel-capacity", "1", "--engine", engine}, "capacity", 4);
+        const Json& voxels = report.at("voxels");
+        EXPECT_GT(voxels.at("overflowed"), 0);
+        EXPECT_EQ(voxels.at("max_per_cell"), 1);
+        EXPECT_EQ(voxels.at("stored").get<int>() + voxels.at("overflowed").get<int>(),
+                  whole.at("voxels").at("stored").get<int>())
+            << "none is dropped in silence";
+    }
+    const int most = whole.at("voxels").at("max_per_cell");
+    const Json fits = workshop.report(own_scene("still_life.nff"),
+                                      {"--cells", "32x32", "--voxel-capacity", std::to_string(most)});
+    EXPECT_EQ(fits.at("verdict"), "completed");
+    EXPECT_EQ(image(fits), image(whole));
+}
+
+TEST(Verdict, ALoadedPictureNeedsNoCycleOfTracing) {
+    const Workshop workshop;
+    const Json report = workshop.report(own_scene("still_life.nff"), {"--cells", "32x32", "--stage", "load"});
+    EXPECT_EQ(report.at("verdict"), "completed");
+    EXPECT_EQ(report.at("cycles").at("precast"), 0);
+    EXPECT_EQ(report.at("cycles").at("trace"), 0);
+    EXPECT_EQ(report.at("rays").at("primary"), 0);
+}
+
+// ---- compare
+
+class Compare : public ::testing::Test {
+  protected:
+    Compare() {
+        for (const std::string hit : {"edge", "interval"}) {
+            workshop.report(own_scene("still_life.nff"), {"--cells", "16x16", "--engine", "untimed", "--hit", hit}, 0,
+                            hit);
+        }
+        workshop.report(own_scene("still_life.nff"), {"--cells", "16x17", "--engine", "untimed"}, 0, "other");
+    }
+    Finished compare(const std::string& a, const std::string& b, const Words& words = {}) const {
+        return workshop.run(joined({"compare", "results/" + a, "results/" + b}, words));
+    }
+    Workshop workshop;
+};
+
+TEST_F(Compare, EndsWithTwoWherePicturesDifferByMoreThanAllowed) {
+    EXPECT_EQ(compare("interval.exr", "edge.exr").exit_code, 0) << "nothing was asked for";
+    EXPECT_EQ(compare("interval.exr", "edge.exr", {"--psnr", "5"}).exit_code, 0);
+    EXPECT_EQ(compare("interval.exr", "edge.exr", {"--psnr", "60"}).exit_code, 2);
+    EXPECT_EQ(compare("interval.png", "edge.png", {"--psnr", "60"}).exit_code, 2);
+    EXPECT_EQ(compare("interval.exr", "edge.exr", {"--wrong-hits", "0"}).exit_code, 2);
+}
+
+TEST_F(Compare, FindsAPictureEqualToItself) {
+    const Finished finished =
+        compare("edge.exr", "edge.exr", {"--psnr", "200", "--wrong-hits", "0", "--json", "-o", "results/d.png"});
+    EXPECT_EQ(finished.exit_code, 0);
+    const Json json = Json::parse(finished.out);
+    EXPECT_EQ(json.at("psnr_db"), 200);
+    EXPECT_EQ(json.at("max_error"), 0);
+    EXPECT_EQ(json.at("wrong_hit_percent"), 0);
+    for (const Pixel& pixel : read_png(workshop.result("d.png")).pixels) ASSERT_EQ(pixel.colour, dvec3(0));
+}
+
+TEST_F(Compare, FindsThePngAsNearToTheExrAsEightBitsAllow) {
+    EXPECT_EQ(compare("edge.png", "edge.exr", {"--psnr", "52"}).exit_code, 0);
+}
+
+TEST_F(Compare, RefusesWhatCannotBeCompared) {
+    for (const std::string file : {"other.exr", "edge.json", "missing.png"}) {
+        const Finished finished = compare("edge.exr", file);
+        EXPECT_EQ(finished.exit_code, 1) << file;
+        EXPECT_EQ(finished.error_lines(), 1u) << finished.err;
+    }
+    EXPECT_EQ(compare("edge.exr", "edge.exr", {"--psnr", "nan"}).exit_code, 1);
+    EXPECT_EQ(compare("edge.exr", "edge.exr", {"--psnr", "201"}).exit_code, 1);
+    EXPECT_EQ(compare("edge.exr", "edge.exr", {"-o", "missing/d.png"}).exit_code, 1);
+}
+
+}  // namespace
+}  // namespace raycell::system_test
