@@ -20,7 +20,7 @@ std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings&
             ++total.trapezes;
             CornerIntensities shades;
             if (gouraud) shades = shade_corners(trapeze, scene);
-            for (int row = trapeze.first_row(); row < frame.height; ++row) {
+            for (int row = trapeze.first_row(frame.height); row < frame.height; ++row) {
                 if (auto span = cut_span(trapeze, row, frame.width, gouraud ? &shades : nullptr)) {
                     ++total.spans;
                     for (;; advance(*span)) {

@@ -1,5 +1,6 @@
 #include "model/polygon.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -36,6 +37,11 @@ Polygon make_polygon(std::uint32_t id, std::uint32_t object, std::vector<dvec3> 
     for (const dvec3& v : vertices) centre += v;
     polygon.plane.c = glm::dot(polygon.plane.n, centre / double(vertices.size()));
     polygon.drop = dominant_axis(polygon.plane.n);
+    constexpr double rounding = 1e-9;
+    for (const dvec3& v : vertices) {
+        polygon.slack = std::max(polygon.slack, std::abs(glm::dot(polygon.plane.n, v) - polygon.plane.c));
+    }
+    polygon.slack = polygon.slack / std::abs(polygon.plane.n[polygon.drop]) + rounding;
     polygon.normal = {polygon.plane.n, {0, 0, 0}, {0, 0, 0}};
     polygon.vertices = std::move(vertices);
     return polygon;

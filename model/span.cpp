@@ -13,8 +13,10 @@ constexpr double least_facing = 1e-5;
 
 std::vector<dvec3> row_part(const Trapeze& trapeze, int row) {
     std::vector<dvec3> part(trapeze.corners.begin(), trapeze.corners.begin() + trapeze.corner_count);
-    if (trapeze.top < row) part = clip_half_space(part, 1, row, 1);
-    if (trapeze.bottom > row + 1 && !part.empty()) part = clip_half_space(part, 1, row + 1, -1);
+    const double low = row - trapeze.slack.y;
+    const double high = row + 1 + trapeze.slack.y;
+    if (trapeze.top < low) part = clip_half_space(part, 1, low, 1);
+    if (trapeze.bottom > high && !part.empty()) part = clip_half_space(part, 1, high, -1);
     return part;
 }
 
@@ -67,7 +69,7 @@ void set_intensity(Span& span, const Trapeze& trapeze, const CornerIntensities& 
 
 std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width,
                              const CornerIntensities* intensities) {
-    if (trapeze.bottom < row || trapeze.top > row + 1) return std::nullopt;
+    if (trapeze.bottom + trapeze.slack.y < row || trapeze.top - trapeze.slack.y > row + 1) return std::nullopt;
     const std::vector<dvec3> part = row_part(trapeze, row);
     if (part.size() < 3) return std::nullopt;
     dvec3 low = part.front();
@@ -76,7 +78,10 @@ std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width,
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
+    low -= trapeze.slack;
+    high += trapeze.slack;
     Span span;
+    span.slack = trapeze.slack;
     span.polygon = trapeze.polygon;
     span.object = trapeze.object;
     span.x = std::clamp(int(std::floor(low.x)), 0, width - 1);
@@ -98,7 +103,7 @@ std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width,
     span.z_max = high.z;
     span.outline_count = int(std::min(part.size(), span.outline.size()));
     for (int i = 0; i < span.outline_count; ++i) span.outline[std::size_t(i)] = part[std::size_t(i)] - corner;
-    set_depth_functions(span, low.y - row, high.y - row);
+    set_depth_functions(span, std::clamp(low.y - row, 0.0, 1.0), std::clamp(high.y - row, 0.0, 1.0));
     if (intensities) {
         set_intensity(span, trapeze, *intensities, std::clamp(row + 0.5, low.y, high.y));
     }

@@ -111,6 +111,7 @@ class Cutter {
         t.plane = polygon_.plane;
         t.drop = polygon_.drop;
         t.normal = polygon_.normal;
+        t.slack[t.drop] = polygon_.slack;
         const dvec3 ring[] = {point_at(open.left, axis_, open.s0), point_at(open.right, axis_, open.s0),
                               point_at(open.right, axis_, open.s1), point_at(open.left, axis_, open.s1)};
         dvec3 centre{0, 0, 0};
@@ -127,6 +128,8 @@ class Cutter {
         side_edge(t, open.right, inside);
         cut_edge(t, open.s0, 1);
         cut_edge(t, open.s1, -1);
+        // Hit points lie on the plane, the outline perhaps a little off it, and the neighbour's plane off the other way.
+        for (int i = 0; i < t.edge_count; ++i) t.edges[std::size_t(i)].c += 2 * polygon_.slack;
         t.top = t.bottom = ring[0].y;
         for (const dvec3& p : ring) {
             t.top = std::min(t.top, p.y);

@@ -1,6 +1,7 @@
 // Precomputation: polygons into trapezes (paper, section 2.2).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -36,9 +37,11 @@ struct Trapeze {
     int edge_count = 0;
     double top = 0;     ///< smallest y, cells
     double bottom = 0;  ///< largest y, cells
-    int first_row() const { return int(top); }
+    dvec3 slack{0, 0, 0};  ///< Polygon::slack, along the dropped axis
+    /// First row of an array of `height` rows that it touches.
+    int first_row(int height) const { return std::clamp(int(top - slack.y), 0, height - 1); }
     /// True when a row below `row` still has a part of it.
-    bool reaches_below(int row) const { return bottom > row + 1; }
+    bool reaches_below(int row) const { return bottom + slack.y > row + 1; }
 };
 
 /// Cuts a polygon that lies inside the cube into trapezes.

@@ -93,11 +93,11 @@ std::vector<dvec3> cell_part(const Span& span) {
     bool left = false;
     bool right = false;
     for (const dvec3& p : part) {
-        left = left || p.x < 0;
-        right = right || p.x > 1;
+        left = left || p.x < -span.slack.x;
+        right = right || p.x > 1 + span.slack.x;
     }
-    if (left) part = clip_half_space(part, 0, 0, 1);
-    if (right && !part.empty()) part = clip_half_space(part, 0, 1, -1);
+    if (left) part = clip_half_space(part, 0, -span.slack.x, 1);
+    if (right && !part.empty()) part = clip_half_space(part, 0, 1 + span.slack.x, -1);
     return part;
 }
 
@@ -139,8 +139,8 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
         part_near = std::min(part_near, p.z);
         part_far = std::max(part_far, p.z);
     }
-    near = std::max(near, part_near);
-    far = std::min(far, part_far);
+    near = std::max(near, part_near - span.slack.z);
+    far = std::min(far, part_far + span.slack.z);
     if (settings.hit == HitTest::depth) {
         double z = 0;
         if (!covers_centre(span, z)) return false;
@@ -198,7 +198,9 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
         return true;
     }
     if (settings.voxel_capacity > 0 && store.voxels.size() >= std::size_t(settings.voxel_capacity)) {
-        ++store.overflowed;
+        // A polygon's next piece would have joined the voxel that already did not fit.
+        if (!mergeable || store.last_overflowed != span.polygon) ++store.overflowed;
+        store.last_overflowed = span.polygon;
         return false;
     }
     set_normal(voxel);

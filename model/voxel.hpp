@@ -38,6 +38,7 @@ struct CellStore {
     std::vector<std::uint64_t> lit;        ///< per voxel, a bit per source (precast, memo)
     std::vector<std::uint64_t> known;      ///< per voxel, a bit per source already asked for (memo)
     std::uint32_t overflowed = 0;          ///< voxels that did not fit
+    std::uint32_t last_overflowed = no_polygon;  ///< whose voxel was the last of them
 };
 
 /// Makes the voxel of the cell that the span is at and stores it, or adds it to the voxel that the same polygon has

@@ -11,7 +11,7 @@ void RowDistributor::take(LoadItem& item, Cycle now) {
     if (item.kind == LoadItem::Kind::trapeze) {
         goes_down_ = !last_row && item.trapeze.reaches_below(row_);
         const bool gouraud = env.context.settings.display == Display::gouraud;
-        if (row_ >= item.trapeze.first_row()) {
+        if (row_ >= item.trapeze.first_row(env.height())) {
             work = env.costs().distribution_span;
             auto span = cut_span(item.trapeze, row_, env.width(), gouraud ? &item.intensities : nullptr);
             if (span) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <random>
@@ -22,10 +23,8 @@ inline std::vector<std::uint64_t> seeds(std::uint64_t first, int count) {
 /// For SCOPED_TRACE: the seed and the command that draws it again.
 inline std::string rerun(std::uint64_t seed) {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    const std::string name = std::string(test->test_suite_name()) + "." + test->name();
-    const char* program = name.find("Timed") == 0 || name.find("/") != std::string::npos ? "cells_tests" : "model_tests";
-    return "seed " + std::to_string(seed) + "; again with: RAYCELL_TEST_SEED=" + std::to_string(seed) + " " + program +
-           " --gtest_filter='" + name + "'";
+    return "seed " + std::to_string(seed) + "; again with: RAYCELL_TEST_SEED=" + std::to_string(seed) + " " +
+           program_invocation_short_name + " --gtest_filter='" + test->test_suite_name() + "." + test->name() + "'";
 }
 
 class Random {

@@ -1,0 +1,23 @@
+# The model and the readers once more under AddressSanitizer and UndefinedBehaviorSanitizer, with their own tests.
+if(NOT RAYCELL_SANITIZE)
+  set(RAYCELL_SANITIZERS -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined
+      -fno-omit-frame-pointer)
+  function(raycell_sanitized target)
+    target_compile_options(${target} PRIVATE ${RAYCELL_SANITIZERS})
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  endfunction()
+
+  raycell_library(raycell_sanitized ../model/*.cpp ../scenes/*.cpp)
+  target_include_directories(raycell_sanitized SYSTEM PUBLIC ${GLM_INCLUDE})
+  target_link_libraries(raycell_sanitized PRIVATE tinyobjloader::tinyobjloader_double)
+  raycell_sanitized(raycell_sanitized)
+
+  foreach(room model scenes)
+    add_executable(${room}_tests_sanitized ${${room}_tests})
+    target_link_libraries(${room}_tests_sanitized PRIVATE raycell_sanitized GTest::gtest_main)
+    target_compile_definitions(${room}_tests_sanitized PRIVATE ${RAYCELL_TEST_DEFINITIONS} RAYCELL_SANITIZED)
+    raycell_sanitized(${room}_tests_sanitized)
+    add_test(NAME "sanitized: ${room}" COMMAND ${room}_tests_sanitized --gtest_brief=1)
+    set_tests_properties("sanitized: ${room}" PROPERTIES TIMEOUT 900)
+  endforeach()
+endif()
