@@ -35,7 +35,7 @@ struct PictureSettings {
     ExteriorMode exterior = ExteriorMode::host;
     int max_depth = 4;               ///< generations after the primary ray, 0..62
     double min_weight = 1.0 / 256;   ///< a secondary ray that weighs less is not sent; 0: no cut
-    double normal_offset = 1e-6;     ///< cells, along the polygon's normal, to the side the new ray goes
+    double normal_offset = 1e-8;     ///< cells, along the polygon's normal, to the side the new ray goes
     double chord_error = 0.1;        ///< cells, largest gap between a curved object and its polygons
     int voxel_capacity = 0;          ///< voxels a cell can hold; 0: unlimited
 };

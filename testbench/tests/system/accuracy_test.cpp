@@ -9,13 +9,15 @@
 namespace raycell::system_test {
 namespace {
 
-constexpr double least_psnr = 60;  ///< at `edge`, dB; measured: 126 at least. One pixel gone wrong costs 20 and more.
+constexpr double least_psnr =
+    60;  ///< at `edge`, dB; measured: 126 at least. One pixel gone wrong costs 20 and more.
 
 struct AccuracyCase {
     const char* scene;
     Words words;
     const char* name;
 };
+void PrintTo(const AccuracyCase& accuracy, std::ostream* out) { *out << accuracy.name; }
 
 class Accuracy : public ::testing::TestWithParam<AccuracyCase> {
   protected:
@@ -30,8 +32,8 @@ class Accuracy : public ::testing::TestWithParam<AccuracyCase> {
             return {0, 100};
         }
         const Json& accuracy = report.at("accuracy");
-        for (const char* key :
-             {"psnr_db", "rmse", "max_error", "off_by_1_255_percent", "off_by_0_1_percent", "wrong_hit_percent"}) {
+        for (const char* key : {"psnr_db", "rmse", "max_error", "off_by_1_255_percent", "off_by_0_1_percent",
+                                "wrong_hit_percent"}) {
             EXPECT_TRUE(accuracy.contains(key)) << key;
         }
         std::printf("%-10s %-9s %7.2f dB, other first hit in %.3f %%\n", GetParam().scene, hit.c_str(),
@@ -57,19 +59,18 @@ TEST_P(Accuracy, GrowsWithEveryRungAndAtTheTopEveryFirstHitIsTheTruths) {
 const Words inside = {"--clip-truth", "--exterior", "none"};
 const Words all = {"--exterior", "host"};
 
-INSTANTIATE_TEST_SUITE_P(
-    Shared, Accuracy,
-    ::testing::Values(AccuracyCase{"teapot-s4", inside, "teapot_inside_the_cube"},
-                      AccuracyCase{"teapot-s4", all, "teapot_with_its_exterior"},
-                      AccuracyCase{"balls-s2", inside, "balls_inside_the_cube"},
-                      AccuracyCase{"balls-s2", all, "balls_with_their_exterior"},
-                      AccuracyCase{"mount-s4", inside, "mount_inside_the_cube"},
-                      AccuracyCase{"mount-s4", all, "mount_with_its_exterior"},
-                      AccuracyCase{"tetra-s4", inside, "tetra_inside_the_cube"},
-                      AccuracyCase{"tetra-s4", all, "tetra_with_its_exterior"},
-                      AccuracyCase{"gears-s1", inside, "gears_inside_the_cube"},
-                      AccuracyCase{"gears-s1", all, "gears_with_their_exterior"}),
-    [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Shared, Accuracy,
+                         ::testing::Values(AccuracyCase{"teapot-s4", inside, "teapot_inside_the_cube"},
+                                           AccuracyCase{"teapot-s4", all, "teapot_with_its_exterior"},
+                                           AccuracyCase{"balls-s2", inside, "balls_inside_the_cube"},
+                                           AccuracyCase{"balls-s2", all, "balls_with_their_exterior"},
+                                           AccuracyCase{"mount-s4", inside, "mount_inside_the_cube"},
+                                           AccuracyCase{"mount-s4", all, "mount_with_its_exterior"},
+                                           AccuracyCase{"tetra-s4", inside, "tetra_inside_the_cube"},
+                                           AccuracyCase{"tetra-s4", all, "tetra_with_its_exterior"},
+                                           AccuracyCase{"gears-s1", inside, "gears_inside_the_cube"},
+                                           AccuracyCase{"gears-s1", all, "gears_with_their_exterior"}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(TruthBeside, TheTimedMachineReportsTheSameAccuracyAsTheUntimedOne) {
     const Workshop workshop;
@@ -84,9 +85,10 @@ TEST(TruthBeside, TheTimedMachineReportsTheSameAccuracyAsTheUntimedOne) {
 TEST(TruthBeside, IsThePictureThatTruthRendersAlone) {
     const Workshop workshop;
     const Json report = workshop.report(own_scene("cornell.nff"), {"--cells", "24x32", "--truth"});
-    ASSERT_EQ(workshop.run({"truth", own_scene("cornell.nff").string(), "--cells", "24x32", "-o", "results/t"})
-                  .exit_code,
-              0);
+    ASSERT_EQ(
+        workshop.run({"truth", own_scene("cornell.nff").string(), "--cells", "24x32", "-o", "results/t"})
+            .exit_code,
+        0);
     const Picture beside = read_exr(workshop.result("a.truth.exr").string());
     const Picture alone = read_exr(workshop.result("t.exr").string());
     EXPECT_EQ(image_hash(beside), image_hash(alone));
@@ -99,6 +101,7 @@ struct Direction {
     int rise;  ///< degrees above the horizon
     int roll;  ///< degrees of the picture round its own axis
 };
+void PrintTo(const Direction& d, std::ostream* out) { *out << d.turn << ' ' << d.rise << ' ' << d.roll; }
 
 /// cornell.nff seen from elsewhere: its walls then stand at other angles to the axes of the array.
 std::string seen_from(const Direction& d) {
@@ -149,8 +152,8 @@ TEST_P(Walls, LetNoPrimaryRayThroughFromTheIntervalUp) {
         for (const std::string hit : {"interval", "plane", "mask", "edge"}) {
             SCOPED_TRACE("viewer " + viewer + ", " + hit);
             const Json report = workshop.report(
-                scene, {"--cells", "64x64", "--engine", "untimed", "--truth", "--clip-truth", "--exterior", "none",
-                        "--max-depth", "0", "--viewer", viewer, "--hit", hit});
+                scene, {"--cells", "64x64", "--engine", "untimed", "--truth", "--clip-truth", "--exterior",
+                        "none", "--max-depth", "0", "--viewer", viewer, "--hit", hit});
             ASSERT_FALSE(report.is_null());
             int hits = 0;
             EXPECT_EQ(leaks(read_exr(workshop.result("a.exr").string()),

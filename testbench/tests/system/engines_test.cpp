@@ -1,4 +1,8 @@
 // The timed and the untimed machine give the same picture, bit for bit (invariant 1), seen from the outside.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
 #include "program.hpp"
 
 namespace raycell::system_test {
@@ -47,21 +51,19 @@ std::string name_of_words(const ::testing::TestParamInfo<Words>& test) {
 
 INSTANTIATE_TEST_SUITE_P(
     With, TimedEqualsUntimed,
-    ::testing::Values(Words{"--cells", "48x32"}, Words{"--cells", "32x48"}, Words{"--cells", "40x1"},
-                      Words{"--cells", "1x40"}, Words{"--cells", "1x1"},
-                      Words{"--cells", "32x32", "--hit", "mask"}, Words{"--cells", "32x32", "--hit", "plane"},
-                      Words{"--cells", "32x32", "--hit", "interval"}, Words{"--cells", "32x32", "--hit", "depth"},
-                      Words{"--cells", "32x32", "--hit", "depth", "--depth", "1"},
-                      Words{"--cells", "32x32", "--depth", "65536"},
-                      Words{"--cells", "32x32", "--normals", "voxel"},
-                      Words{"--cells", "32x32", "--shadows", "precast"},
-                      Words{"--cells", "32x32", "--shadows", "memo"},
-                      Words{"--cells", "32x32", "--shadows", "memo", "--hit", "interval", "--exterior", "none"},
-                      Words{"--cells", "32x32", "--exterior", "none"},
-                      Words{"--cells", "32x32", "--viewer", "infinity"},
-                      Words{"--cells", "32x32", "--max-depth", "0"},
-                      Words{"--cells", "32x32", "--max-depth", "7", "--min-weight", "0"},
-                      Words{"--cells", "32x32", "--normal-offset", "0.05"}),
+    ::testing::Values(
+        Words{"--cells", "48x32"}, Words{"--cells", "32x48"}, Words{"--cells", "40x1"},
+        Words{"--cells", "1x40"}, Words{"--cells", "1x1"}, Words{"--cells", "32x32", "--hit", "mask"},
+        Words{"--cells", "32x32", "--hit", "plane"}, Words{"--cells", "32x32", "--hit", "interval"},
+        Words{"--cells", "32x32", "--hit", "depth"},
+        Words{"--cells", "32x32", "--hit", "depth", "--depth", "1"},
+        Words{"--cells", "32x32", "--depth", "65536"}, Words{"--cells", "32x32", "--normals", "voxel"},
+        Words{"--cells", "32x32", "--shadows", "precast"}, Words{"--cells", "32x32", "--shadows", "memo"},
+        Words{"--cells", "32x32", "--shadows", "memo", "--hit", "interval", "--exterior", "none"},
+        Words{"--cells", "32x32", "--exterior", "none"}, Words{"--cells", "32x32", "--viewer", "infinity"},
+        Words{"--cells", "32x32", "--max-depth", "0"},
+        Words{"--cells", "32x32", "--max-depth", "7", "--min-weight", "0"},
+        Words{"--cells", "32x32", "--normal-offset", "0.05"}),
     name_of_words);
 
 class LoadedEqualsUntimed : public ::testing::TestWithParam<Words> {};
@@ -69,7 +71,8 @@ class LoadedEqualsUntimed : public ::testing::TestWithParam<Words> {};
 TEST_P(LoadedEqualsUntimed, OnOwnScenes) {
     const Workshop workshop;
     for (const std::string& scene : own_scenes) {
-        expect_equal_engines(workshop, own_scene(scene), joined({"--cells", "32x32", "--stage", "load"}, GetParam()));
+        expect_equal_engines(workshop, own_scene(scene),
+                             joined({"--cells", "32x32", "--stage", "load"}, GetParam()));
     }
 }
 
@@ -83,7 +86,8 @@ TEST(Engines, AMachineWithoutRoomForItsVoxelsStillGivesTheUntimedPicture) {
     const Workshop workshop;
     const Words words = {"--cells", "32x32", "--voxel-capacity", "2"};
     const Json timed = workshop.report(own_scene("still_life.nff"), words, 4);
-    const Json untimed = workshop.report(own_scene("still_life.nff"), joined(words, {"--engine", "untimed"}), 4, "b");
+    const Json untimed =
+        workshop.report(own_scene("still_life.nff"), joined(words, {"--engine", "untimed"}), 4, "b");
     EXPECT_EQ(image(timed), image(untimed));
     EXPECT_EQ(timed.at("voxels"), untimed.at("voxels"));
 }
@@ -96,10 +100,52 @@ TEST(Engines, BitsAskedForWhenFirstHitGiveThePictureOfBitsCastBefore) {
                 SCOPED_TRACE(scene + " " + engine + " " + hit);
                 const Words words = {"--cells", "32x32", "--engine", engine, "--hit", hit};
                 const Json memo = workshop.report(own_scene(scene), joined(words, {"--shadows", "memo"}));
-                const Json precast = workshop.report(own_scene(scene), joined(words, {"--shadows", "precast"}), 0, "b");
+                const Json precast =
+                    workshop.report(own_scene(scene), joined(words, {"--shadows", "precast"}), 0, "b");
                 EXPECT_EQ(image(memo), image(precast));
             }
         }
+    }
+}
+
+/// A ball and a glass pane over a floor, all lengths multiplied by `scale`.
+std::string scaled_scene(double scale) {
+    std::string text = "b 0.2 0.3 0.4\nv\n";
+    const auto add = [&](const std::string& word, const std::vector<double>& lengths) {
+        text += word;
+        for (const double length : lengths) {
+            char number[40];
+            std::snprintf(number, sizeof number, " %.17g", length * scale);
+            text += number;
+        }
+        text += '\n';
+    };
+    add("from", {1, 2, 6});
+    add("at", {0, 0.5, 0});
+    text += "up 0 1 0\nangle 40\n";
+    add("hither", {0.125});
+    text += "resolution 64 64\n";
+    add("l", {5, 6, 4});
+    add("l", {-4, 3, 5});
+    text += "f 0.8 0.7 0.6 0.8 0.2 10 0 1\np 4\n";
+    for (const auto& corner : {std::vector<double>{-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}})
+        add("", corner);
+    text += "f 1 0.5 0.2 0.6 0.4 30 0 1\n";
+    add("s", {0.25, 0.75, -0.5, 0.75});
+    text += "f 1 1 1 0.1 0.1 50 0.8 1.5\np 3\n";
+    for (const auto& corner : {std::vector<double>{-1, 0, 1}, {1, 0, 1.25}, {0, 1.5, 1}}) add("", corner);
+    return text;
+}
+
+TEST(Engines, APictureDoesNotDependOnTheUnitOfLength) {
+    // Powers of two, so that not even rounding differs.
+    const Workshop workshop;
+    const Words words = {"--cells", "32x24"};
+    const std::string first = image(workshop.report(workshop.write("unit.nff", scaled_scene(1)), words));
+    for (const int power : {-60, -20, -1, 1, 20, 60}) {
+        SCOPED_TRACE("2^" + std::to_string(power));
+        const fs::path scene = workshop.write("scaled.nff", scaled_scene(std::ldexp(1.0, power)));
+        EXPECT_EQ(image(workshop.report(scene, words)), first);
     }
 }
 
@@ -109,7 +155,8 @@ std::vector<std::string> names_in(const std::string& folder, const std::string& 
     std::vector<std::string> names;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(shared_scenes() / folder, ignored)) {
-        if (entry.path().extension() == extension) names.push_back(folder + "/" + entry.path().filename().string());
+        if (entry.path().extension() == extension)
+            names.push_back(folder + "/" + entry.path().filename().string());
     }
     std::sort(names.begin(), names.end());
     return names;

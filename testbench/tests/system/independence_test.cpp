@@ -82,7 +82,8 @@ TEST(Schedule, IsEqualForEqualConfigurationsAndForWhatIsNoTime) {
     EXPECT_EQ(of({}), first);
     EXPECT_EQ(of({"--clock-mhz", "100"}), first) << "cycles don't know how long they last";
     EXPECT_EQ(of({"--truth"}), first);
-    EXPECT_EQ(of({"--buffer", "1", "--ray-store", "8", "--networks", "half"}), first) << "the defaults, spelt out";
+    EXPECT_EQ(of({"--buffer", "1", "--ray-store", "8", "--networks", "half"}), first)
+        << "the defaults, spelt out";
 }
 
 TEST(Schedule, DiffersWithBuffersRayStoreNetworksAndLinks) {
@@ -105,7 +106,8 @@ TEST(Cost, AFasterClockShortensSecondsAndNotCycles) {
     const Json slow = workshop.report(own_scene("cornell.nff"), joined(square, {"--clock-mhz", "10"}));
     const Json fast = workshop.report(own_scene("cornell.nff"), joined(square, {"--clock-mhz", "40"}));
     EXPECT_EQ(slow.at("cycles"), fast.at("cycles"));
-    EXPECT_NEAR(slow.at("simulated_seconds").get<double>(), 4 * fast.at("simulated_seconds").get<double>(), 1e-9);
+    EXPECT_NEAR(slow.at("simulated_seconds").get<double>(), 4 * fast.at("simulated_seconds").get<double>(),
+                1e-9);
 }
 
 /// A table with a line of names, as columns.
@@ -119,7 +121,8 @@ std::map<std::string, std::vector<std::int64_t>> columns(const std::string& csv)
     std::map<std::string, std::vector<std::int64_t>> all;
     while (std::getline(lines, line)) {
         std::istringstream row(line);
-        for (std::size_t i = 0; std::getline(row, word, ','); ++i) all[names.at(i)].push_back(std::stoll(word));
+        for (std::size_t i = 0; std::getline(row, word, ','); ++i)
+            all[names.at(i)].push_back(std::stoll(word));
     }
     return all;
 }
@@ -127,7 +130,8 @@ std::map<std::string, std::vector<std::int64_t>> columns(const std::string& csv)
 TEST(Cells, TheTableOfCellsAddsUpToTheReport) {
     const Workshop workshop;
     for (const std::string engine : {"timed", "untimed"}) {
-        const Json report = workshop.report(own_scene("still_life.nff"), {"--cells", "20x11", "--engine", engine});
+        const Json report =
+            workshop.report(own_scene("still_life.nff"), {"--cells", "20x11", "--engine", engine});
         const auto table = columns(read_text(workshop.result("a.cells.csv")));
         ASSERT_TRUE(table.count("voxels") && table.count("x") && table.count("y"));
         std::set<std::pair<std::int64_t, std::int64_t>> cells;
@@ -143,7 +147,8 @@ TEST(Cells, TheTableOfCellsAddsUpToTheReport) {
         EXPECT_EQ(most, report.at("voxels").at("max_per_cell").get<std::int64_t>());
         if (engine == "untimed") continue;
         const auto& peaks = table.at("ray_store_peak");
-        EXPECT_EQ(*std::max_element(peaks.begin(), peaks.end()), report.at("ray_store").at("peak").get<std::int64_t>());
+        EXPECT_EQ(*std::max_element(peaks.begin(), peaks.end()),
+                  report.at("ray_store").at("peak").get<std::int64_t>());
     }
 }
 

@@ -93,13 +93,15 @@ Finished Workshop::render(const fs::path& scene, const Words& words, const std::
     return run(joined({"render", scene.string(), "--quiet", "-o", "results/" + name}, words), limit_seconds);
 }
 
-Json Workshop::report(const fs::path& scene, const Words& words, int exit_code, const std::string& name) const {
+Json Workshop::report(const fs::path& scene, const Words& words, int exit_code,
+                      const std::string& name) const {
     const Finished finished = render(scene, words, name);
     std::string command = "raycell render " + scene.string();
     for (const std::string& word : words) command += " " + word;
     SCOPED_TRACE(command);
     EXPECT_FALSE(finished.timed_out);
     EXPECT_EQ(finished.exit_code, exit_code) << finished.err.substr(0, 2000);
+    EXPECT_EQ(finished.out, "") << "--quiet";
     if (!fs::exists(result(name + ".json"))) {
         ADD_FAILURE() << "no report was written";
         return {};
@@ -116,7 +118,8 @@ fs::path Workshop::write(const std::string& name, const std::string& text) const
 
 std::vector<std::string> Workshop::results() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(path_ / "results")) names.push_back(entry.path().filename());
+    for (const auto& entry : fs::directory_iterator(path_ / "results"))
+        names.push_back(entry.path().filename());
     std::sort(names.begin(), names.end());
     return names;
 }

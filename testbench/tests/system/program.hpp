@@ -22,7 +22,7 @@ constexpr bool sanitized = false;
 
 /// What became of a child process.
 struct Finished {
-    int exit_code = -1;      ///< -1 where a signal ended it
+    int exit_code = -1;  ///< -1 where a signal ended it
     int signal = 0;
     bool timed_out = false;  ///< it was killed because it took longer than allowed
     double seconds = 0;      ///< wall time
@@ -48,7 +48,8 @@ class Workshop {
     Finished render(const fs::path& scene, const Words& words, const std::string& name = "a",
                     double limit_seconds = 100) const;
     /// The same, expected to end with `exit_code`; returns NAME.json, checked for sense, and null without it.
-    Json report(const fs::path& scene, const Words& words, int exit_code = 0, const std::string& name = "a") const;
+    Json report(const fs::path& scene, const Words& words, int exit_code = 0,
+                const std::string& name = "a") const;
 
     fs::path write(const std::string& name, const std::string& text) const;
     const fs::path& path() const { return path_; }
@@ -61,6 +62,9 @@ class Workshop {
 };
 
 std::string read_text(const fs::path& path);
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 Words joined(Words first, const Words& second);
 
 /// The project's own scenes, and those that lie beside the project where they do.
@@ -77,9 +81,9 @@ inline std::string schedule(const Json& report) { return report.at("hash").at("s
 
 }  // namespace raycell::system_test
 
-#define SKIP_WITHOUT_SHARED_SCENES()                                                                    \
-    if (!std::filesystem::is_directory(raycell::system_test::shared_scenes())) {                        \
-        GTEST_SKIP() << "the scene data beside the project is missing: "                                \
-                     << raycell::system_test::shared_scenes().string();                                 \
-    }                                                                                                   \
+#define SKIP_WITHOUT_SHARED_SCENES()                                             \
+    if (!std::filesystem::is_directory(raycell::system_test::shared_scenes())) { \
+        GTEST_SKIP() << "the scene data beside the project is missing: "         \
+                     << raycell::system_test::shared_scenes().string();          \
+    }                                                                            \
     static_assert(true)

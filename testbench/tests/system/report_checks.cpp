@@ -101,9 +101,11 @@ void expect_share(const Json& value) {
 
 void expect_bounds(const Json& report) {
     const Json& cycles = report.at("cycles");
-    EXPECT_EQ(count(cycles, "total"), count(cycles, "load") + count(cycles, "precast") + count(cycles, "trace"));
+    EXPECT_EQ(count(cycles, "total"),
+              count(cycles, "load") + count(cycles, "precast") + count(cycles, "trace"));
     EXPECT_NEAR(report.at("simulated_seconds").get<double>(),
-                double(count(cycles, "total")) / (report.at("config").at("clock-mhz").get<double>() * 1e6), 1e-9);
+                double(count(cycles, "total")) / (report.at("config").at("clock-mhz").get<double>() * 1e6),
+                1e-9);
     for (const auto& stage : report.at("stages")) expect_share(stage.at("utilisation"));
     const Json& store = report.at("ray_store");
     EXPECT_LE(count(store, "peak"), count(store, "capacity"));

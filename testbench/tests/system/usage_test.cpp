@@ -16,7 +16,7 @@ void expect_refused(const Workshop& workshop, const Finished& finished, const st
     const std::size_t at = message.find(hint);
     if (at != std::string::npos) message.erase(at);
     EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1) << finished.err;
-    EXPECT_NE(message.find(part), std::string::npos) << "no '" << part << "' in: " << finished.err;
+    EXPECT_TRUE(contains(message, part)) << "no '" << part << "' in: " << finished.err;
     EXPECT_EQ(workshop.results(), std::vector<std::string>());
 }
 
@@ -31,7 +31,8 @@ void expect_each_refused(const std::vector<Wrong>& wrongs) {
         std::string line;
         for (const std::string& word : wrong.words) line += " '" + word + "'";
         SCOPED_TRACE("raycell render SCENE" + line);
-        expect_refused(workshop, workshop.render(own_scene("cornell.nff"), joined({"--cells", "4x4"}, wrong.words)),
+        expect_refused(workshop,
+                       workshop.render(own_scene("cornell.nff"), joined({"--cells", "4x4"}, wrong.words)),
                        wrong.part);
     }
 }
@@ -64,23 +65,25 @@ TEST(Usage, NoCommandIsAnErrorThatNamesWhatIsMissing) {
 }
 
 TEST(Usage, SizesOutOfRangeAreRefused) {
-    expect_values_refused("cells", {"0x0", "5000x5000", "4097x1", "1x4097", "0x8", "8x0", "-1", "-8x8", "8x-8", "8x",
-                                    "x8", "8", "8x8x8", "8.5x8", "8X8", "8 x 8", "nan", "nanxnan", "inf", "",
-                                    "99999999999x1", "4294967297x1"});
+    expect_values_refused(
+        "cells", {"0x0",  "5000x5000", "4097x1", "1x4097", "0x8",           "8x0",         "-1",  "-8x8",
+                  "8x-8", "8x",        "x8",     "8",      "8x8x8",         "8.5x8",       "8X8", "8 x 8",
+                  "nan",  "nanxnan",   "inf",    "",       "99999999999x1", "4294967297x1"});
 }
 
 TEST(Usage, WholeNumbersOutOfRangeAreRefused) {
-    const std::vector<std::pair<std::string, Words>> options = {{"depth", {"0", "-1", "65537"}},
-                                                                {"max-depth", {"-1", "63"}},
-                                                                {"word-bits", {"7", "33", "-20"}},
-                                                                {"ray-store", {"0", "-1", "1025"}},
-                                                                {"buffer", {"0", "-1", "1025"}},
-                                                                {"link-bits", {"0", "-1", "4097"}},
-                                                                {"max-cycles", {"-1", "4611686018427387905"}},
-                                                                {"voxel-capacity", {"-1", "1000001"}},
-                                                                {"exterior-processors", {"0", "-1", "1000001"}},
-                                                                {"exterior-latency", {"0", "-1", "1000000001"}},
-                                                                {"seed", {"-1", "9223372036854775808"}}};
+    const std::vector<std::pair<std::string, Words>> options = {
+        {"depth", {"0", "-1", "65537"}},
+        {"max-depth", {"-1", "63"}},
+        {"word-bits", {"7", "33", "-20"}},
+        {"ray-store", {"0", "-1", "1025"}},
+        {"buffer", {"0", "-1", "1025"}},
+        {"link-bits", {"0", "-1", "4097"}},
+        {"max-cycles", {"-1", "4611686018427387905"}},
+        {"voxel-capacity", {"-1", "1000001"}},
+        {"exterior-processors", {"0", "-1", "1000001"}},
+        {"exterior-latency", {"0", "-1", "1000000001"}},
+        {"seed", {"-1", "9223372036854775808"}}};
     for (const auto& [option, values] : options) {
         expect_values_refused(option, values);
         expect_values_refused(option, {"1.5", "1e3", "99999999999999999999", "4294967297.0"});
@@ -90,10 +93,11 @@ TEST(Usage, WholeNumbersOutOfRangeAreRefused) {
 }
 
 TEST(Usage, RealNumbersOutOfRangeAreRefused) {
-    const std::vector<std::pair<std::string, Words>> options = {{"chord-error", {"0", "-0.1", "1001", "1e-4"}},
-                                                                {"min-weight", {"-0.1", "1.1", "-1e-9"}},
-                                                                {"clock-mhz", {"0", "-20", "1e6", "1e-4"}},
-                                                                {"normal-offset", {"-1e-9", "1.5"}}};
+    const std::vector<std::pair<std::string, Words>> options = {
+        {"chord-error", {"0", "-0.1", "1001", "1e-4"}},
+        {"min-weight", {"-0.1", "1.1", "-1e-9"}},
+        {"clock-mhz", {"0", "-20", "1e6", "1e-4"}},
+        {"normal-offset", {"-1e-9", "1.5"}}};
     for (const auto& [option, values] : options) {
         expect_values_refused(option, values);
         expect_values_refused(option, no_numbers);
@@ -110,8 +114,9 @@ TEST(Usage, WordsThatNoChoiceOffersAreRefused) {
 }
 
 TEST(Usage, CostsThatAreNoneAreRefused) {
-    expect_values_refused("cost", {"walk_step", "walk_step=", "walk_step=-1", "walk_step=0", "walk_step=nan",
-                                   "walk_step=1.5", "walk_step=99999999999", "walk_step=3x", "foo=1", "=1", "", "="});
+    expect_values_refused(
+        "cost", {"walk_step", "walk_step=", "walk_step=-1", "walk_step=0", "walk_step=nan", "walk_step=1.5",
+                 "walk_step=99999999999", "walk_step=3x", "foo=1", "=1", "", "="});
 }
 
 TEST(Usage, AnOptionWithoutItsValueIsRefused) {
@@ -165,7 +170,7 @@ TEST(Usage, ARunThatCannotWriteOneOfItsFilesLeavesNoneAndRemovesNothing) {
         const Finished finished = workshop.render(own_scene("cornell.nff"), {"--cells", "4x4"});
         EXPECT_EQ(finished.exit_code, 1);
         EXPECT_EQ(finished.error_lines(), 1u) << finished.err;
-        EXPECT_NE(finished.err.find("a" + suffix), std::string::npos) << finished.err;
+        EXPECT_TRUE(contains(finished.err, "a" + suffix)) << finished.err;
         EXPECT_EQ(workshop.results(), std::vector<std::string>{"a" + suffix});
         fs::remove_all(workshop.result("a" + suffix));
     }
@@ -183,7 +188,7 @@ TEST(Usage, HelpEndsWellAndNamesUnits) {
         const Finished finished = workshop.run(words);
         EXPECT_EQ(finished.exit_code, 0);
         EXPECT_EQ(finished.err, "");
-        for (const std::string& part : parts) EXPECT_NE(finished.out.find(part), std::string::npos) << part;
+        for (const std::string& part : parts) EXPECT_TRUE(contains(finished.out, part)) << part;
     }
 }
 
@@ -226,7 +231,8 @@ TEST(Configuration, ValuesThatAreNotThereOrTooManyAreRefused) {
 
 TEST(Configuration, AFolderIsNoConfiguration) {
     const Workshop workshop;
-    expect_refused(workshop, workshop.render(own_scene("cornell.nff"), {"--cells", "4x4", "--config", "."}), ".: ");
+    expect_refused(workshop, workshop.render(own_scene("cornell.nff"), {"--cells", "4x4", "--config", "."}),
+                   ".: ");
 }
 
 TEST(Configuration, GarbageIsNeverPrintedRaw) {
