@@ -44,8 +44,14 @@ Cycle Cell::step(Cycle now) {
     }
     finish_traversal(now);
     finish_shading(now);
-    move_answers(now);
-    move_replies(now);
+    // A reply that found no way goes before the answers that pass through: neither can be kept waiting for ever.
+    if (reply_waits_) {
+        move_replies(now);
+        move_answers(now);
+    } else {
+        move_answers(now);
+        move_replies(now);
+    }
     feed_own(now);
     feed_children(now);
     move_rays(now);
@@ -95,6 +101,7 @@ void Cell::finish_traversal(Cycle now) {
         return;
     }
     traversal_.packet->stage = RayPacket::Stage::decided;
+    traversal_.packet->decided = now;
     traversal_.packet = nullptr;
 }
 
@@ -153,49 +160,69 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
 
 void Cell::move_answers(Cycle now) {
     const int index = env_.classes.answer;
+    std::array<int, side_count> order{};  // sides with an answer, oldest first
+    int count = 0;
     for (int side = 0; side < side_count; ++side) {
         if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
         LinkIn* in = in_[std::size_t(side)];
-        const Message message = in->front(index);
-        if (message.kind != Message::Kind::answer) continue;
-        const Cycle ready = in->arrival(index) + env_.costs().route_return - 1;
-        if (now < ready) {
-            want(ready);
-            continue;
+        if (in->front(index).kind != Message::Kind::answer) continue;
+        int place = count++;
+        for (; place > 0; --place) {
+            const int before = order[std::size_t(place - 1)];
+            if (in_[std::size_t(before)]->arrival(index) <= in->arrival(index)) break;
+            order[std::size_t(place)] = before;
         }
-        Answer* answer = message.answer;
-        if (local(*answer)) {
-            if (store_port_ == now) {
-                want(now + 1);
-                continue;
-            }
-            deliver(*answer, now);
-            env_.pools.answers.give_back(answer);
-        } else {
-            const Side way = route(*answer);
-            LinkOut* out = out_[std::size_t(way)];
-            if (!out->can_send(index, next_)) continue;
-            ++env_.counters.rays.return_hops;
-            if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
-            const bool intensity = answer->kind == Answer::Kind::intensity;
-            out->send(index, message, env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
-            record(now, Event::send, std::uint32_t(way) << 8 | unsigned(index));
-        }
-        in->pop(index);
-        if (in->occupancy(index) > 0) want(now + 1);
+        order[std::size_t(place)] = side;
     }
+    for (int i = 0; i < count; ++i) move_answer(*in_[std::size_t(order[std::size_t(i)])], now);
+}
+
+void Cell::move_answer(LinkIn& in, Cycle now) {
+    const int index = env_.classes.answer;
+    const Message message = in.front(index);
+    const Cycle ready = in.arrival(index) + env_.costs().route_return;
+    if (now < ready) {
+        want(ready);
+        return;
+    }
+    Answer* answer = message.answer;
+    if (local(*answer)) {
+        if (store_port_ == now) {
+            want(now + 1);
+            return;
+        }
+        deliver(*answer, now);
+        env_.pools.answers.give_back(answer);
+    } else {
+        const Side way = route(*answer);
+        LinkOut* out = out_[std::size_t(way)];
+        if (!out->can_send(index, next_)) return;
+        ++env_.counters.rays.return_hops;
+        if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
+        const bool intensity = answer->kind == Answer::Kind::intensity;
+        out->send(index, message, env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
+        record(now, Event::send, std::uint32_t(way) << 8 | unsigned(index));
+    }
+    in.pop(index);
+    if (in.occupancy(index) > 0) want(now + 1);
 }
 
 void Cell::move_rays(Cycle now) {
+    // Oldest first: a round robin over places, or one per output, lets a ray wait for ever for an output that others
+    // keep using (found as a livelock in spite of reserved slots).
+    std::vector<WaitingRay>& waiting = env_.waiting;
+    waiting.clear();
     const std::size_t places = place_count();
-    const std::size_t first = next_move_;
-    for (std::size_t i = 0; i < places; ++i) {
-        const std::size_t place = (first + i) % places;
+    for (std::size_t place = 0; place < places; ++place) {
         if (nothing_at(place)) continue;
         RayPacket* packet = packet_at(place);
         if (!packet || packet->stage != RayPacket::Stage::decided) continue;
-        if (move_ray(*packet, place, now)) next_move_ = place + 1;
+        waiting.push_back({packet->decided, place, packet});
     }
+    std::sort(waiting.begin(), waiting.end(), [](const WaitingRay& a, const WaitingRay& b) {
+        return a.since != b.since ? a.since < b.since : a.place < b.place;
+    });
+    for (const WaitingRay& ray : waiting) move_ray(*ray.packet, ray.place, now);
 }
 
 bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
@@ -311,7 +338,7 @@ bool Cell::busy() const {
            root_waits_ || root_to_send_;
 }
 
-std::vector<std::string> Cell::describe_blocked(Cycle now) const {
+std::vector<std::string> Cell::describe_blocked() const {
     std::vector<std::string> lines;
     const std::string at = "cell (" + std::to_string(x_) + ", " + std::to_string(y_) + ") ";
     const auto ray_text = [](const Ray& ray) {
@@ -331,13 +358,22 @@ std::vector<std::string> Cell::describe_blocked(Cycle now) const {
                     : std::string("the output ") + sides[int(packet->visit.crossing.side)];
         lines.push_back(line);
     }
+    for (int side = 0; side < side_count; ++side) {
+        const LinkIn* in = in_[std::size_t(side)];
+        if (!in) continue;
+        const Message message = in->front(env_.classes.answer);
+        if (message.kind != Message::Kind::answer) continue;
+        lines.push_back(at + "input " + sides[side] + ": answer to ray " + std::to_string(message.answer->id >> 32) +
+                        "/" + std::to_string(message.answer->id & 0xffffffffU) + " since cycle " +
+                        std::to_string(in->arrival(env_.classes.answer)) + " waits for the output " +
+                        sides[int(route(*message.answer))]);
+    }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];
         if (slot.state == Slot::State::empty || !slot.packet) continue;
         lines.push_back(at + "slot " + std::to_string(i) + ": " + ray_text(slot.packet->ray) + " since cycle " +
                         std::to_string(slot.since) + (slot.child ? ", its child can't leave" : ", waits for answers"));
     }
-    (void)now;
     return lines;
 }
 

@@ -38,7 +38,7 @@ class Cell {
     /// True while anything in the cell is unfinished: a unit at work, a slot in use, an own ray not answered.
     bool busy() const;
     /// What holds the cell up, a line each ("" if nothing): for reports of runs that stopped.
-    std::vector<std::string> describe_blocked(Cycle now) const;
+    std::vector<std::string> describe_blocked() const;
 
   private:
     struct RayInput {
@@ -66,6 +66,7 @@ class Cell {
     void finish_traversal(Cycle now);
     void start_traversal(Cycle now);
     void move_answers(Cycle now);
+    void move_answer(LinkIn& in, Cycle now);
     void move_replies(Cycle now);
     void move_rays(Cycle now);
     // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray, then the
@@ -116,7 +117,7 @@ class Cell {
     Traversal traversal_;
     Shading shading_;
     std::size_t next_test_ = 0;  ///< round robin over places
-    std::size_t next_move_ = 0;
+    bool reply_waits_ = false;   ///< a reply of this cell found no way in its last cycle
     Cycle store_port_ = never;   ///< cycle in which the ray store's one write port was used
     Cycle load_done_ = 0;
     LoadItem* load_item_ = nullptr;

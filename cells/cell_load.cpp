@@ -41,7 +41,10 @@ void Cell::take_load(LoadItem& item) {
             store_voxel(store_, item.span, env_.context.settings, env_.context.scene.frame.level());
             if (item.span.last != x_) advance(item.span);
             break;
-        case LoadItem::Kind::end_of_scene: ++env_.counters.cells_loaded; break;
+        case LoadItem::Kind::end_of_scene:
+            ++env_.counters.cells_loaded;
+            env_.counters.last_progress = env_.scheduler.now();
+            break;
         // Latched in hardware; the model keeps one copy for all cells.
         case LoadItem::Kind::setup:
         case LoadItem::Kind::features:

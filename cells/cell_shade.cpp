@@ -86,7 +86,7 @@ void Cell::deliver_to_slot(const Answer& answer, Cycle now) {
 // ---- own rays and children -----------------------------------------------------------------------------------
 
 void Cell::feed_own(Cycle now) {
-    if (own_) return;
+    if (own_ || env_.draining) return;
     if (env_.phase == Phase::precast) {
         const std::uint64_t sources = env_.context.scene.sources.size();
         if (precast_next_ >= store_.voxels.size() * sources) return;
@@ -112,6 +112,7 @@ void Cell::feed_own(Cycle now) {
 }
 
 void Cell::feed_children(Cycle now) {
+    if (env_.draining) return;
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         Slot& slot = ray_store_[i];
         if (slot.state == Slot::State::waiting && !slot.child) slot.child = next_child(slot, i, now);
@@ -241,6 +242,7 @@ void Cell::finish_shading(Cycle now) {
 }
 
 void Cell::move_replies(Cycle now) {
+    reply_waits_ = false;
     if (shading_.job == Shading::Job::direct_answer) {
         Answer answer = answer_to(shading_.packet->ray, Answer::Kind::intensity);
         answer.colour = shading_.result;
@@ -249,6 +251,8 @@ void Cell::move_replies(Cycle now) {
             ++env_.counters.rays_answered;
             env_.pools.rays.give_back(packet);
             shading_.job = Shading::Job::idle;
+        } else {
+            reply_waits_ = true;
         }
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
@@ -256,7 +260,10 @@ void Cell::move_replies(Cycle now) {
         if (slot.state != Slot::State::to_answer) continue;
         Answer answer = answer_to(slot.packet->ray, Answer::Kind::intensity);
         answer.colour = slot.result;
-        if (!send_answer(answer, now)) continue;
+        if (!send_answer(answer, now)) {
+            reply_waits_ = true;
+            continue;
+        }
         ++env_.counters.rays_answered;
         release_slot(i, now);
     }

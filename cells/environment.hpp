@@ -27,12 +27,20 @@ struct Counters {
     std::uint64_t slot_cycles = 0;     ///< sum over accepted rays of the cycles in the ray store
     std::uint64_t traversal_cycles = 0;
     std::uint64_t shading_cycles = 0;
-    Cycle last_progress = 0;           ///< last cycle in which an answer other than "postponed" came home
+    Cycle last_progress = 0;  ///< last cycle in which an end-of-scene mark, or an answer other than "postponed", came home
+};
+
+/// A tested ray that wants to move on.
+struct WaitingRay {
+    Cycle since;
+    std::size_t place;
+    RayPacket* packet;
 };
 
 struct Environment {
+    const PictureSettings settings;
+    const MachineSettings machine;
     Context context;
-    const MachineSettings& machine;
     MessageBits bits;
     BufferClasses classes;
     Scheduler& scheduler;
@@ -41,13 +49,17 @@ struct Environment {
     Counters counters;
     Phase phase = Phase::load;
     Cycle phase_start = 0;
+    std::vector<WaitingRay> waiting;  ///< scratch of the cell that is running
+    bool draining = false;  ///< no cell sends new rays: what still stands in a buffer at the end is locked
 
-    Environment(const CellScene& scene, const PictureSettings& settings, const MachineSettings& machine_settings,
-                Scheduler& s, Picture& p)
-        : context{scene, settings},
+    /// The scene must outlive the environment; the settings are copied.
+    Environment(const CellScene& scene, const PictureSettings& picture_settings,
+                const MachineSettings& machine_settings, Scheduler& s, Picture& p)
+        : settings(picture_settings),
           machine(machine_settings),
-          bits(message_bits(settings, machine_settings)),
-          classes(buffer_classes(machine_settings.networks)),
+          context{scene, settings},
+          bits(message_bits(settings, machine)),
+          classes(buffer_classes(machine.networks)),
           scheduler(s),
           picture(p) {}
 

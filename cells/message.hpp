@@ -14,6 +14,7 @@ struct RayPacket {
     Ray ray;
     Visit visit;
     Stage stage = Stage::untested;
+    std::uint64_t decided = 0;  ///< cycle in which the test was over
 };
 
 /// A load message: polygons from geometry, trapezes from precomputation and down the column of distributors, spans

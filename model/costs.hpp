@@ -27,7 +27,7 @@ struct CostTable {
     std::uint32_t local_intensity = 6;   ///< ambient and the final sums
     std::uint32_t per_lit_source = 20;   ///< diffuse, R·L and its power
     // Router and ray store.
-    std::uint32_t route_return = 1;      ///< a return from an input to an output
+    std::uint32_t route_return = 1;      ///< an answer from its arrival to an output or home
     std::uint32_t backoff = 64;          ///< shortest wait before a postponed ray is sent again
     // Loading.
     std::uint32_t load_voxel = 12;       ///< a cell makes its voxel and advances the span

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "model/shading.hpp"
 #include "model/tessellate.hpp"
 
 namespace raycell {
@@ -107,6 +108,10 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
 }
 
 CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings) {
+    if (scene.sources.size() > max_sources) {
+        throw std::invalid_argument("the scene has " + std::to_string(scene.sources.size()) +
+                                    " light sources; at most " + std::to_string(max_sources) + " are allowed");
+    }
     CellScene placed;
     placed.frame = frame;
     placed.background = scene.background;
@@ -122,13 +127,18 @@ CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSetti
     }
     const Box cube = frame.cube();
     constexpr double hair = 1e-6;  // cells: what touches a face does not lie beyond it
+    bool any_inside = false;
     for (const Polygon& polygon : placed.polygons) {
+        any_inside = any_inside || !clip_to_box(polygon.vertices, cube).empty();
         for (const dvec3& p : polygon.vertices) {
             for (int axis = 0; axis < 3; ++axis) {
                 if (p[axis] < cube.low[axis] - hair) placed.beyond[std::size_t(2 * axis)] = true;
                 if (p[axis] > cube.high[axis] + hair) placed.beyond[std::size_t(2 * axis + 1)] = true;
             }
         }
+    }
+    if (!any_inside && !placed.polygons.empty()) {
+        placed.warnings.push_back("nothing of the scene lies in the cube that the viewer sees");
     }
     return placed;
 }

@@ -63,7 +63,7 @@ struct CellScene {
 /// Throws std::invalid_argument if the scene has no view.
 Frame place_frame(const Scene& scene, const PictureSettings& settings);
 
-/// Tessellates the whole scene into a frame.
+/// Tessellates the whole scene into a frame. Throws std::invalid_argument for more than max_sources sources.
 CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings);
 
 }  // namespace raycell

@@ -18,8 +18,11 @@ void count_ray(RayCounts& counts, RayKind kind) {
 
 UntimedMachine::UntimedMachine(const CellScene& scene, const PictureSettings& settings,
                                const ExteriorTracer* exterior)
-    : context_{scene, settings}, exterior_(exterior), cells_(load_array(scene, settings, &loaded_)) {
-    if (settings.exterior == ExteriorMode::host && !exterior) {
+    : settings_(settings),
+      context_{scene, settings_},
+      exterior_(exterior),
+      cells_(load_array(scene, settings_, &loaded_)) {
+    if (settings.exterior == ExteriorMode::host && settings.stage == RunStage::trace && !exterior) {
         throw std::invalid_argument("exterior 'host' needs a tracer for what lies outside the cube");
     }
 }

@@ -27,7 +27,8 @@ void count_ray(RayCounts& counts, RayKind kind);
 
 class UntimedMachine {
   public:
-    /// `exterior` may be null when settings.exterior is none. Loads the array.
+    /// `exterior` may be null when settings.exterior is none, or nothing is traced. Loads the array. The scene must
+    /// outlive the machine; the settings are copied. Throws std::invalid_argument without the exterior it needs.
     UntimedMachine(const CellScene& scene, const PictureSettings& settings, const ExteriorTracer* exterior);
 
     /// Traces (or, with --stage load, displays) every pixel; `progress` is called after each row.
@@ -60,6 +61,7 @@ class UntimedMachine {
     bool in_array(Place at) const;
     void count_return(const Ray& ray, Place from, Pixel* pixel);
 
+    const PictureSettings settings_;
     Context context_;
     const ExteriorTracer* exterior_;
     LoadCounts loaded_;

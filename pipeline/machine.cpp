@@ -88,8 +88,10 @@ bool Machine::watch(void* self, Cycle now) {
     Environment& env = machine.environment_;
     if (env.phase == Phase::trace && env.counters.rays_destroyed > 0 &&
         now - std::max(env.counters.last_progress, env.phase_start) > machine.livelock_window()) {
-        machine.livelock_ = true;
-        return false;
+        // Nothing comes home any more. With no new rays on their way, all that is not locked comes to rest.
+        env.draining = true;
+        if (machine.drain_start_ == never) machine.drain_start_ = now;
+        if (now - machine.drain_start_ > machine.livelock_window()) return false;
     }
     constexpr std::uint64_t calls_between_reports = 4096;
     if (machine.progress_ && ++machine.watch_calls_ % calls_between_reports == 0) {
@@ -113,14 +115,18 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     }
     // No free-running clock: this returns when nobody has anything to do any more.
     sc_core::sc_start();
-    const Cycle cycles = scheduler_.now() - environment_.phase_start;
+    if (!phase_complete(result)) judge(result);
+    // A phase is over with its last message; what woke after that only found nothing to do.
+    const Cycle end = result.verdict == Verdict::completed
+                          ? std::max(environment_.counters.last_progress, environment_.phase_start)
+                          : scheduler_.now();
+    const Cycle cycles = end - environment_.phase_start;
     const double seconds = seconds_since(wall);
     switch (phase) {
         case Phase::load: result.load_cycles = cycles, result.wall_load = seconds; break;
         case Phase::precast: result.precast_cycles = cycles, result.wall_precast = seconds; break;
         case Phase::trace: result.trace_cycles = cycles, result.wall_trace = seconds; break;
     }
-    if (!phase_complete(result)) judge(result);
 }
 
 bool Machine::phase_complete(const RunResult&) const {
@@ -139,8 +145,8 @@ bool Machine::phase_complete(const RunResult&) const {
 }
 
 void Machine::judge(RunResult& result) {
-    if (livelock_) {
-        result.verdict = Verdict::livelock;
+    if (environment_.draining) {
+        result.verdict = buffers_empty() ? Verdict::livelock : Verdict::deadlock;
     } else if (scheduler_.limit_reached()) {
         result.verdict = Verdict::cycle_limit;
     } else {
@@ -148,6 +154,15 @@ void Machine::judge(RunResult& result) {
         if (kick_finds_work()) throw std::logic_error("internal error: a cell that could move was not woken");
     }
     result.report = stuck_report();
+}
+
+bool Machine::buffers_empty() const {
+    for (const auto& link : array_.links()) {
+        for (int index = 0; index < link->classes(); ++index) {
+            if (link->occupancy(index) > 0) return false;
+        }
+    }
+    return true;
 }
 
 /// Nothing moves by itself: if a step of any cell now changes something, its waking was lost, and the verdict would
@@ -162,7 +177,7 @@ bool Machine::kick_finds_work() {
 std::vector<std::string> Machine::stuck_report() const {
     std::vector<std::string> lines;
     for (const auto& cell : array_.cells()) {
-        auto more = cell->cell().describe_blocked(scheduler_.now());
+        auto more = cell->cell().describe_blocked();
         lines.insert(lines.end(), more.begin(), more.end());
     }
     const auto age = [](const std::string& line) {

@@ -84,6 +84,7 @@ class Machine : public sc_core::sc_module {
     std::vector<std::string> stuck_report() const;
     static bool watch(void* self, Cycle now);
     bool kick_finds_work();
+    bool buffers_empty() const;
 
     Scheduler scheduler_;
     Picture picture_;
@@ -98,7 +99,7 @@ class Machine : public sc_core::sc_module {
     std::vector<std::unique_ptr<Link>> row_links_;
     std::function<void(const RunProgress&)> progress_;
     std::uint64_t watch_calls_ = 0;
-    bool livelock_ = false;
+    Cycle drain_start_ = never;
 };
 
 }  // namespace raycell

@@ -1,12 +1,14 @@
 // raycell: renders with the simulated machine, renders the truth, compares pictures.
 #include <systemc>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <new>
 
 #include "scenes/diagnostics.hpp"
 #include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/configuration.hpp"
 #include "testbench/raycell/options.hpp"
 
 namespace {
@@ -19,20 +21,39 @@ const bool banner_off = [] {
     return true;
 }();
 
-/// The arguments with those of --config put before the command line's own, which so take precedence.
-std::vector<std::string> with_configuration(std::vector<std::string> words, const std::vector<Command>& commands) {
+/// CLI11 takes a vector of arguments from its end.
+void parse(CLI::App& program, std::vector<std::string> words) {
+    std::reverse(words.begin(), words.end());
+    program.parse(words);
+}
+
+/// The file of the last --config, empty if there is none.
+std::string configuration_named(const std::vector<std::string>& words) {
+    std::string path;
     for (std::size_t i = 1; i < words.size(); ++i) {
-        const bool joined = words[i].rfind("--config=", 0) == 0;
-        if (!joined && words[i] != "--config") continue;
-        if (!joined && i + 1 == words.size()) throw UsageError("--config: expected a file");
-        const std::string path = joined ? words[i].substr(9) : words[i + 1];
-        for (const Command& command : commands) {
-            if (words.front() != command.app->get_name()) continue;
-            const auto more = arguments_from_file(path, *command.app);
-            words.insert(words.begin() + 1, more.begin(), more.end());
-            return words;
+        if (words[i].rfind("--config=", 0) == 0) path = words[i].substr(9);
+        if (words[i] == "--config") {
+            if (i + 1 == words.size()) throw UsageError("--config: expected a file");
+            path = words[i + 1];
         }
     }
+    return path;
+}
+
+/// The arguments with those of --config put before the command line's own, which so take precedence.
+std::vector<std::string> with_configuration(CLI::App& program, std::vector<std::string> words,
+                                            const CLI::App& command) {
+    const std::string path = configuration_named(words);
+    if (path.empty()) return words;
+    const auto from_file = arguments_from_file(path, command);
+    std::vector<std::string> alone = {words.front()};
+    alone.insert(alone.end(), from_file.begin(), from_file.end());
+    try {
+        parse(program, alone);  // so that an error is known to be the file's
+    } catch (const CLI::ParseError& error) {
+        throw UsageError(path + ": " + error.what());
+    }
+    words.insert(words.begin() + 1, from_file.begin(), from_file.end());
     return words;
 }
 
@@ -43,16 +64,27 @@ int run(int argc, char** argv) {
     program.require_subcommand(1);
     const std::vector<Command> commands = {add_render_command(program), add_truth_command(program),
                                            add_compare_command(program)};
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (!words.empty() && words.front().rfind("-", 0) != 0) {
+        const auto named = [&](const Command& c) { return c.app->get_name() == words.front(); };
+        const auto command = std::find_if(commands.begin(), commands.end(), named);
+        if (command == commands.end()) {
+            throw UsageError("unknown command '" + printable(words.front()) +
+                             "'; expected render, truth or compare");
+        }
+        words = with_configuration(program, std::move(words), *command->app);
+    }
     try {
-        std::vector<std::string> words(argv + 1, argv + argc);
-        if (!words.empty()) words = with_configuration(std::move(words), commands);
-        std::reverse(words.begin(), words.end());  // CLI11 takes a vector from its end
-        program.parse(words);
+        parse(program, words);
     } catch (const CLI::ParseError& error) {
         return program.exit(error) == 0 ? exit_done : exit_usage;
     }
     for (const Command& command : commands) {
-        if (command.app->parsed()) return command.run();
+        if (!command.app->parsed()) continue;
+        const int code = command.run();
+        std::cout.flush();
+        if (!std::cout) throw std::runtime_error("standard output can't be written");
+        return code;
     }
     return exit_usage;
 }

@@ -49,9 +49,9 @@ void write_text(const std::string& path, const std::string& text) {
     file.finish();
 }
 
-std::string OutputSet::path(const std::string& suffix) {
+void OutputSet::write(const std::string& suffix, const std::function<void(const std::string&)>& writer) {
+    writer(prefix_ + suffix);
     paths_.push_back(prefix_ + suffix);
-    return paths_.back();
 }
 
 OutputSet::~OutputSet() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,8 @@ class OutputSet {
     OutputSet(const OutputSet&) = delete;
     OutputSet& operator=(const OutputSet&) = delete;
 
-    /// PREFIX + suffix, remembered.
-    std::string path(const std::string& suffix);
+    /// Has PREFIX + suffix written, and remembers it once it is there.
+    void write(const std::string& suffix, const std::function<void(const std::string& path)>& writer);
     void keep() { paths_.clear(); }
 
   private:

@@ -1,15 +1,18 @@
 #include "testbench/raycell/options.hpp"
 
-#include <cstdio>
-#include <fstream>
-
 namespace raycell {
 
 void OptionTable::text(const std::string& name, std::string& target, const std::string& type,
                        const std::string& help) {
-    const std::string flags = name == "scene" ? "scene,--scene" : name == "output" ? "-o,--output" : "--" + name;
+    const std::string flags = name == "output" ? "-o,--output" : "--" + name;
     app_.add_option(flags, target, help)->type_name(type)->capture_default_str()->take_last();
     entries_.push_back({name, [&target] { return nlohmann::ordered_json(target); }});
+}
+
+void OptionTable::positional(const std::string& name, std::string& target, const std::string& help) {
+    app_.add_option_function<std::string>(
+            name, [&target](const std::string& word) { target = word; }, help)
+        ->type_name("FILE");
 }
 
 void OptionTable::flag(const std::string& name, bool& target, const std::string& help) {
@@ -19,15 +22,14 @@ void OptionTable::flag(const std::string& name, bool& target, const std::string&
 
 void OptionTable::size(const std::string& name, int& width, int& height, const std::string& help) {
     const auto parse = [](const std::string& word, int& w, int& h) {
-        char x = 0;
-        char rest = 0;
-        return std::sscanf(word.c_str(), "%d%c%d%c", &w, &x, &h, &rest) == 3 && x == 'x' && w >= 1 && h >= 1 &&
-               w <= 4096 && h <= 4096;
+        const auto x = word.find('x');
+        return x != std::string::npos && parse_number(word.substr(0, x), w) && parse_number(word.substr(x + 1), h) &&
+               w >= 1 && h >= 1 && w <= 4096 && h <= 4096;
     };
     const auto check = [parse](const std::string& word) -> std::string {
         int w = 0;
         int h = 0;
-        return parse(word, w, h) ? "" : "expected WxH from 1x1 to 4096x4096, not '" + word + "'";
+        return parse(word, w, h) ? "" : "expected WxH from 1x1 to 4096x4096, not '" + printable(word) + "'";
     };
     const auto set = [parse, &width, &height](const std::string& word) { parse(word, width, height); };
     app_.add_option_function<std::string>("--" + name, set, help)
@@ -57,7 +59,8 @@ void OptionTable::costs(CostTable& table) {
     };
     app_.add_option_function<std::vector<std::string>>("--cost", set,
                                                        "cycles of an operation; may come several times. " + names)
-        ->check(CLI::Validator(check, "NAME=CYCLES"));
+        ->check(CLI::Validator(check, "NAME=CYCLES"))
+        ->allow_extra_args(false);  // one entry each time; what follows may be the scene
     entries_.push_back({"cost", [&table] {
                             nlohmann::ordered_json list = nlohmann::ordered_json::array();
                             for (const auto& [name, member] : CostTable::entries()) {
@@ -73,44 +76,10 @@ nlohmann::ordered_json OptionTable::values() const {
     return all;
 }
 
-std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app) {
-    std::ifstream file(path);
-    if (!file) throw UsageError(path + ": can't be read; expected a configuration file");
-    std::vector<CLI::ConfigItem> items;
-    try {
-        items = CLI::ConfigTOML().from_config(file);
-    } catch (const CLI::Error& error) {
-        throw UsageError(path + ": " + error.what());
-    }
-    std::vector<std::string> arguments;
-    for (const CLI::ConfigItem& item : items) {
-        if (item.name == "++" || item.name == "--") continue;  // the parser's marks for sections
-        const std::string key = item.fullname();
-        const std::string option = "--" + key;
-        const CLI::Option* known = app.get_option_no_throw(option);
-        if (!known || key == "config" || key == "help") {
-            throw UsageError(path + ": unknown key '" + key.substr(0, 40) + "'; keys are the options of '" +
-                             app.get_name() + "' without their dashes, see --help");
-        }
-        if (known->get_items_expected_max() == 0) {  // a flag
-            arguments.push_back(option + "=" + (item.inputs.empty() ? "true" : item.inputs.front()));
-            continue;
-        }
-        if (item.inputs.empty() || (item.inputs.size() == 1 && item.inputs.front().empty())) continue;
-        for (const std::string& input : item.inputs) arguments.push_back(option + "=" + input);
-    }
-    return arguments;
-}
-
-std::string to_toml(const nlohmann::ordered_json& values) {
-    std::string text;
-    for (const auto& [key, value] : values.items()) text += key + " = " + value.dump() + "\n";
-    return text;
-}
-
 void add_scene_options(OptionTable& table, RenderOptions& options) {
     PictureSettings& p = options.picture;
     table.text("scene", options.scene, "FILE", "scene: .nff or .obj");
+    table.positional("file", options.scene, "the same; has precedence over --scene");
     table.text("output", options.prefix, "PREFIX", "where results go: PREFIX.exr, PREFIX.png, PREFIX.json, ...");
     table.text("view", options.view, "FILE.nff", "take background, view and sources from this file");
     table.choice("viewer", p.viewer, {{"scene", ViewerMode::scene}, {"infinity", ViewerMode::infinity}},
@@ -164,7 +133,7 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
                  "slots kept by generation, or free for all");
     table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
     table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
-    table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62, "stop after so many; 0: never");
+    table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62, "timed engine: stop after so many cycles; 0: never");
     table.number("voxel-capacity", p.voxel_capacity, 0, 1000000, "voxels that a cell can hold; 0: unlimited");
     table.number("normal-offset", p.normal_offset, 0.0, 1.0, "start of secondary rays off their polygon, cells");
     table.number("exterior-processors", m.exterior_processors, 1, 1000000, "processors outside the cube");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "model/settings.hpp"
+#include "scenes/diagnostics.hpp"
 
 namespace raycell {
 
@@ -16,6 +18,13 @@ namespace raycell {
 struct UsageError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// Reads a whole word as a decimal number; no octal, no blanks, nothing behind it, no overflow.
+template <typename T>
+bool parse_number(const std::string& word, T& value) {
+    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && stop == word.data() + word.size() && !word.empty();
+}
 
 /// Registers options with CLI11 and remembers how to read their effective values back.
 class OptionTable {
@@ -26,6 +35,8 @@ class OptionTable {
     template <typename T>
     void number(const std::string& name, T& target, T least, T most, const std::string& help);
     void text(const std::string& name, std::string& target, const std::string& type, const std::string& help);
+    /// A word without a dash in front; not part of the configuration.
+    void positional(const std::string& name, std::string& target, const std::string& help);
     void flag(const std::string& name, bool& target, const std::string& help);
     template <typename E>
     void choice(const std::string& name, E& target, std::vector<std::pair<std::string, E>> values,
@@ -47,13 +58,6 @@ class OptionTable {
     std::vector<Entry> entries_;
 };
 
-/// Turns a configuration file (TOML: key = value, keys are the options' names) into arguments for `app`.
-/// Throws UsageError naming file and key for keys that the command doesn't know.
-std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app);
-
-/// The effective options as a configuration file that reproduces the run.
-std::string to_toml(const nlohmann::ordered_json& values);
-
 struct RenderOptions {
     std::string scene;
     std::string prefix = "out";
@@ -73,21 +77,24 @@ void add_machine_options(OptionTable& table, RenderOptions& options);
 
 template <typename T>
 void OptionTable::number(const std::string& name, T& target, T least, T most, const std::string& help) {
-    const auto in_range = [least, most, name](const std::string& word) -> std::string {
+    const auto in_range = [least, most](const std::string& word) -> std::string {
         T value{};
         // Written so that NaN fails too.
-        if (!CLI::detail::lexical_cast(word, value) || !(value >= least && value <= most)) {
+        if (!parse_number(word, value) || !(value >= least && value <= most)) {
             std::ostringstream text;
-            text << "expected a number from " << least << " to " << most << ", not '" << word << "'";
+            text << "expected a number from " << least << " to " << most << ", not '" << printable(word) << "'";
             return text.str();
         }
         return "";
     };
     std::ostringstream range;
     range << least << ".." << most;
-    app_.add_option("--" + name, target, help)
+    std::ostringstream now;
+    now << target;
+    app_.add_option_function<std::string>(
+            "--" + name, [&target](const std::string& word) { parse_number(word, target); }, help)
         ->check(CLI::Validator(in_range, range.str()))
-        ->capture_default_str()
+        ->default_str(now.str())
         ->take_last();
     entries_.push_back({name, [&target] { return nlohmann::ordered_json(target); }});
 }
@@ -112,7 +119,7 @@ void OptionTable::choice(const std::string& name, E& target, std::vector<std::pa
         for (const auto& entry : values) {
             if (entry.first == word) return "";
         }
-        return "expected one of " + words + ", not '" + word + "'";
+        return "expected one of " + words + ", not '" + printable(word) + "'";
     };
     app_.add_option_function<std::string>("--" + name, set, help)
         ->check(CLI::Validator(known, words))

@@ -12,6 +12,7 @@
 #include "model/truth/truth.hpp"
 #include "model/untimed.hpp"
 #include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/configuration.hpp"
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/picture_file.hpp"
 #include "testbench/raycell/report_json.hpp"
@@ -183,9 +184,9 @@ Json render_truth(const RenderOptions& options, const CellScene& scene, const Pi
     const CellScene clipped = options.clip_truth ? clip_scene(scene) : scene;
     const TruthRenderer truth(clipped, {options.picture.max_depth, options.picture.min_weight});
     const Picture exact = truth.render();
-    write_exr(exact, outputs.path(".truth.exr"));
-    write_png(exact, outputs.path(".truth.png"));
-    write_png(difference(picture, exact), outputs.path(".difference.png"));
+    outputs.write(".truth.exr", [&](const std::string& path) { write_exr(exact, path); });
+    outputs.write(".truth.png", [&](const std::string& path) { write_png(exact, path); });
+    outputs.write(".difference.png", [&](const std::string& path) { write_png(difference(picture, exact), path); });
     return report(compare(picture, exact));
 }
 
@@ -252,11 +253,11 @@ int run(const RenderOptions& options, const OptionTable& table) {
     if (options.truth) json["accuracy"] = render_truth(options, scene, result.picture, outputs);
     json["config"] = config;
     json["model"] = model_report(done);
-    write_exr(result.picture, outputs.path(".exr"));
-    write_png(result.picture, outputs.path(".png"));
-    write_text(outputs.path(".cells.csv"), done.cells_csv);
-    write_text(outputs.path(".toml"), to_toml(config));
-    write_text(outputs.path(".json"), json.dump(2) + "\n");
+    outputs.write(".exr", [&](const std::string& path) { write_exr(result.picture, path); });
+    outputs.write(".png", [&](const std::string& path) { write_png(result.picture, path); });
+    outputs.write(".cells.csv", [&](const std::string& path) { write_text(path, done.cells_csv); });
+    outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(config)); });
+    outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
     outputs.keep();
     explain(result);
     if (!options.quiet) summarise(options, json);

@@ -15,6 +15,10 @@ Json stage(const StageStatistics& s, Cycle cycles) {
 
 }  // namespace
 
+std::string to_text(const Json& json) {
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
 std::string hex(std::uint64_t value) {
     char text[17];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));

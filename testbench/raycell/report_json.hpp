@@ -14,6 +14,9 @@ nlohmann::ordered_json report(const RunResult& result, const CellScene& scene, c
                               const MachineSettings& machine);
 nlohmann::ordered_json report(const Accuracy& accuracy);
 
+/// JSON as text for a file; bytes of names that are no UTF-8 are replaced, not refused.
+std::string to_text(const nlohmann::ordered_json& json);
+
 /// A 64-bit hash as 16 hexadecimal digits: JSON's numbers can't hold it.
 std::string hex(std::uint64_t value);
 

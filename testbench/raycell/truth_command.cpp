@@ -5,6 +5,7 @@
 #include "model/truth/clip.hpp"
 #include "model/truth/truth.hpp"
 #include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/configuration.hpp"
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/picture_file.hpp"
 #include "testbench/raycell/report_json.hpp"
@@ -51,10 +52,10 @@ int run(const TruthOptions& options, const OptionTable& table) {
     json["model"]["wall_seconds"]["trace"] =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     OutputSet outputs(options.prefix);
-    write_exr(picture, outputs.path(".exr"));
-    write_png(picture, outputs.path(".png"));
-    write_text(outputs.path(".toml"), to_toml(table.values()));
-    write_text(outputs.path(".json"), json.dump(2) + "\n");
+    outputs.write(".exr", [&](const std::string& path) { write_exr(picture, path); });
+    outputs.write(".png", [&](const std::string& path) { write_png(picture, path); });
+    outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(table.values())); });
+    outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
     outputs.keep();
     if (!options.quiet) std::cout << options.prefix << ".png\n";
     return exit_done;

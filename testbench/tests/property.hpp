@@ -24,13 +24,16 @@ inline std::vector<std::uint64_t> seeds(std::uint64_t first, int count) {
 inline std::string rerun(std::uint64_t seed) {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     return "seed " + std::to_string(seed) + "; again with: RAYCELL_TEST_SEED=" + std::to_string(seed) + " " +
-           program_invocation_short_name + " --gtest_filter='" + test->test_suite_name() + "." + test->name() + "'";
+           program_invocation_short_name + " --gtest_filter='" + test->test_suite_name() + "." +
+           test->name() + "'";
 }
 
 class Random {
   public:
     explicit Random(std::uint64_t seed) : engine_(seed) {}
-    double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+    double uniform(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(engine_);
+    }
     int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
     bool chance(double share) { return uniform(0, 1) < share; }
     std::mt19937_64& engine() { return engine_; }

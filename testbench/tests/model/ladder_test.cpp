@@ -13,7 +13,8 @@ using property::Random;
 struct Exact {
     double t = 1e300;
     std::uint32_t polygon = no_polygon;
-    bool doubtful = false;  ///< passes an edge too closely, or runs along a plane, for two computations to agree
+    bool doubtful =
+        false;  ///< passes an edge too closely, or runs along a plane, for two computations to agree
 };
 
 Exact search(const CellScene& scene, const dvec3& origin, const dvec3& direction) {
@@ -68,10 +69,11 @@ void expect_exact(const CellScene& scene, Random& random, int rays) {
         const auto found = walker::walk(cells, context, ray, x, y);
         std::ostringstream text;
         text.precision(17);
-        text << "ray from (" << origin.x << ", " << origin.y << ", " << origin.z << ") along (" << direction.x << ", "
-             << direction.y << ", " << direction.z << ")";
+        text << "ray from (" << origin.x << ", " << origin.y << ", " << origin.z << ") along (" << direction.x
+             << ", " << direction.y << ", " << direction.z << ")";
         ASSERT_EQ(found.has_value(), exact.polygon != no_polygon)
-            << text.str() << "; found " << (found ? found->polygon : no_polygon) << ", exact " << exact.polygon;
+            << text.str() << "; found " << (found ? found->polygon : no_polygon) << ", exact "
+            << exact.polygon;
         if (!found) continue;
         ASSERT_EQ(found->polygon, exact.polygon) << text.str();
         ASSERT_NEAR(found->t, exact.t, 1e-6) << text.str();
@@ -83,12 +85,15 @@ TEST(Ladder, EdgeFindsWhatASearchThroughAllPolygonsFinds) {
     for (const std::uint64_t seed : property::seeds(1, 60)) {
         SCOPED_TRACE(property::rerun(seed));
         Random random(seed);
-        CellScene scene = shapes::empty_cube(random.whole(1, 24), random.whole(1, 24), random.uniform(5, 30), random.whole(1, 1500));
+        CellScene scene = shapes::empty_cube(random.whole(1, 24), random.whole(1, 24), random.uniform(5, 30),
+                                             random.whole(1, 1500));
         const dvec3 size = scene.frame.cube().high;
         for (int i = 0; i < 25; ++i) {
             const shapes::Axes axes = shapes::attitude(random, random.whole(0, 5));
-            const dvec3 centre = size * dvec3(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
-            auto outline = shapes::lift(shapes::star(random, random.whole(3, 40), random.uniform(0.1, 7)), axes, centre);
+            const dvec3 centre =
+                size * dvec3(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
+            auto outline =
+                shapes::lift(shapes::star(random, random.whole(3, 40), random.uniform(0.1, 7)), axes, centre);
             // Cut to the cube: what sticks out is the exterior's.
             outline = clip_to_box(outline, scene.frame.cube());
             if (outline.empty() || shapes::area_of(outline) < 1e-6) continue;
@@ -121,7 +126,11 @@ TEST(Ladder, EdgeIsExactOnConcavePolygonsAlongTheCellBorders) {
         std::set<std::pair<int, double>> planes;
         std::vector<Polygon> kept;
         for (Polygon& polygon : scene.polygons) {
-            if (!planes.insert({dominant_axis(polygon.plane.n), polygon.vertices[0][dominant_axis(polygon.plane.n)]}).second) continue;
+            if (!planes
+                     .insert({dominant_axis(polygon.plane.n),
+                              polygon.vertices[0][dominant_axis(polygon.plane.n)]})
+                     .second)
+                continue;
             polygon.id = std::uint32_t(kept.size());
             kept.push_back(polygon);
         }
@@ -135,7 +144,8 @@ TEST(Ladder, ARayCannotHitThePolygonThatItLeaves) {
     CellScene scene = shapes::empty_cube(4, 4, 8, 64);
     hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
     hand_made::add_rectangle(scene, 0, {0, 0, 5}, {4, 0, 0}, {0, 4, 0});
-    for (const HitTest rung : {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
+    for (const HitTest rung :
+         {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
         PictureSettings settings;
         settings.width = settings.height = 4;
         settings.depth_levels = 64;
@@ -158,7 +168,8 @@ TEST(Ladder, EqualDistancesGoToTheLowerId) {
     hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
     hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
     std::swap(scene.polygons[0], scene.polygons[1]);  // stored the other way round
-    for (const HitTest rung : {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
+    for (const HitTest rung :
+         {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
         PictureSettings settings;
         settings.width = settings.height = 4;
         settings.depth_levels = 64;

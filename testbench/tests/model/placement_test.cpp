@@ -23,7 +23,8 @@ Scene scene_of(Random& random) {
         if (i % 3 == 0) {
             scene.primitives.push_back({0, SpherePrimitive{centre, random.uniform(0.05, 2), false}});
         } else if (i % 3 == 1) {
-            scene.primitives.push_back({0, ConePrimitive{centre, random.uniform(0.05, 2), centre + dvec3(0.3, 1, 0.2), 0.1, false}});
+            scene.primitives.push_back(
+                {0, ConePrimitive{centre, random.uniform(0.05, 2), centre + dvec3(0.3, 1, 0.2), 0.1, false}});
         } else {
             scene.primitives.push_back(
                 {0, PolygonPrimitive{{centre, centre + dvec3(1, 0.2, 0), centre + dvec3(0, 1, 0.7)}, {}}});
@@ -50,7 +51,8 @@ TEST(Placement, CentresOfTheFirstAndLastRowSpanTheAngleExactly) {
         const double x = 0.5 * settings.width;
         const dvec3 first = frame.primary_ray(x, 0.5).direction;
         const dvec3 last = frame.primary_ray(x, settings.height - 0.5).direction;
-        EXPECT_NEAR(std::acos(std::clamp(glm::dot(first, last), -1.0, 1.0)) * 180 / hand_made::pi, scene.view->angle, 1e-6);
+        EXPECT_NEAR(std::acos(std::clamp(glm::dot(first, last), -1.0, 1.0)) * 180 / hand_made::pi,
+                    scene.view->angle, 1e-6);
         EXPECT_LT(first.y, last.y);  // row 0 on top
         // The view axis goes through the middle, straight back.
         const dvec3 middle = frame.primary_ray(x, 0.5 * settings.height).direction;
@@ -73,7 +75,8 @@ TEST(Placement, ToCellsIsASimilarity) {
         EXPECT_NEAR(glm::dot(glm::cross(frame.right, frame.down), frame.forward), 1, 1e-12);
         EXPECT_LT(glm::dot(frame.down, scene.view->up), 0);
         EXPECT_LT(glm::length(frame.to_cells(frame.corner)), 1e-9);
-        EXPECT_LT(glm::length(frame.to_cells(scene.view->from) - frame.eye), 1e-6 * (1 + glm::length(frame.eye)));
+        EXPECT_LT(glm::length(frame.to_cells(scene.view->from) - frame.eye),
+                  1e-6 * (1 + glm::length(frame.eye)));
     }
 }
 
@@ -89,7 +92,8 @@ TEST(Placement, PrimaryRaysPassThroughTheEyeAndTheirPixelCentre) {
             EXPECT_EQ(ray.origin, dvec3(x, y, 0));
             EXPECT_NEAR(glm::length(ray.direction), 1, 1e-14);
             const dvec3 back = frame.eye - ray.origin;
-            EXPECT_LT(glm::length(back - glm::dot(back, ray.direction) * ray.direction), 1e-9 * glm::length(back));
+            EXPECT_LT(glm::length(back - glm::dot(back, ray.direction) * ray.direction),
+                      1e-9 * glm::length(back));
         }
     }
 }
@@ -113,7 +117,8 @@ TEST(Placement, WhatTheViewerSeesLiesBetweenTheScreenAndTheBack) {
                 if (p.z <= frame.eye.z || p.z <= hither) continue;
                 const double scale = -frame.eye.z / (p.z - frame.eye.z);
                 const dvec2 screen = dvec2(frame.eye) + scale * dvec2(p - frame.eye);
-                if (screen.x < 0 || screen.y < 0 || screen.x > frame.width || screen.y > frame.height) continue;
+                if (screen.x < 0 || screen.y < 0 || screen.x > frame.width || screen.y > frame.height)
+                    continue;
                 ++tried;
                 EXPECT_GT(p.z, 0);
                 EXPECT_LT(p.z, frame.depth);
@@ -158,7 +163,8 @@ TEST(Placement, ViewerAtInfinitySeesAlongZWithTheScaleOfItsTarget) {
         const auto ray = frame.primary_ray(0.5, 0.5);
         EXPECT_EQ(ray.direction, dvec3(0, 0, 1));
         EXPECT_EQ(ray.origin, dvec3(0.5, 0.5, 0));
-        const double tall = 2 * std::tan(scene.view->angle * hand_made::pi / 360) * glm::length(scene.view->at - scene.view->from);
+        const double tall = 2 * std::tan(scene.view->angle * hand_made::pi / 360) *
+                            glm::length(scene.view->at - scene.view->from);
         EXPECT_NEAR(frame.cell_width * (settings.height - 1), tall, 1e-9 * tall);
         const dvec3 target = frame.to_cells(scene.view->at);
         EXPECT_NEAR(target.x, 0.5 * settings.width, 1e-6);

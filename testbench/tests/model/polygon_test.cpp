@@ -40,7 +40,8 @@ TEST(Polygon, PlaneHoldsItsVerticesAlsoSeenEdgeOn) {
         const Polygon polygon = make_polygon(1, 2, shapes::lift(shapes::star(random, 7, 10), axes, centre));
         EXPECT_NEAR(glm::length(polygon.plane.n), 1, 1e-14);
         EXPECT_GT(glm::dot(polygon.plane.n, axes.w), 0.999999);
-        for (const dvec3& v : polygon.vertices) EXPECT_NEAR(glm::dot(polygon.plane.n, v), polygon.plane.c, 1e-11);
+        for (const dvec3& v : polygon.vertices)
+            EXPECT_NEAR(glm::dot(polygon.plane.n, v), polygon.plane.c, 1e-11);
         // Projected along the dominant axis at least 1/sqrt(3) of the area is left.
         EXPECT_GE(std::abs(polygon.plane.n[polygon.drop]), 0.577);
     }
@@ -98,7 +99,8 @@ TEST(Clipping, HalvesAddUpToTheWholeAndLieOnTheirSides) {
     for (const std::uint64_t seed : property::seeds(1900, 300)) {
         SCOPED_TRACE(property::rerun(seed));
         Random random(seed);
-        const auto outline = shapes::lift(shapes::star(random, random.whole(3, 40), 10), shapes::turned(random), dvec3(5));
+        const auto outline =
+            shapes::lift(shapes::star(random, random.whole(3, 40), 10), shapes::turned(random), dvec3(5));
         const int axis = random.whole(0, 2);
         const double at = random.uniform(0, 10);
         const auto above = clip_half_space(outline, axis, at, 1);
@@ -133,7 +135,8 @@ TEST(Triangulation, AreasAddUpAndNoTriangleTurnsTheOtherWay) {
         ASSERT_EQ(triangles.size(), outline.size() - 2);
         double sum = 0;
         for (const auto& t : triangles) {
-            const double twice = glm::dot(newell({outline[t[0]], outline[t[1]], outline[t[2]]}), glm::normalize(normal));
+            const double twice =
+                glm::dot(newell({outline[t[0]], outline[t[1]], outline[t[2]]}), glm::normalize(normal));
             EXPECT_GE(twice, -1e-9);
             sum += twice;
         }

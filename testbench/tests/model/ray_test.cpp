@@ -55,7 +55,8 @@ TEST(Walk, VisitsEveryCellThatTheRayIsInAndNoOther) {
         std::set<std::pair<int, int>> in_walk;
         for (const Step& step : visited) in_walk.insert({step.x, step.y});
         for (std::size_t i = 0; i < expected.size() / 2; ++i) {
-            EXPECT_TRUE(in_walk.count({expected[i].x, expected[i].y})) << expected[i].x << ", " << expected[i].y;
+            EXPECT_TRUE(in_walk.count({expected[i].x, expected[i].y}))
+                << expected[i].x << ", " << expected[i].y;
         }
         // A walk only adds a cell where the ray passes a corner: one step off the brute force.
         std::size_t next = 0;
@@ -64,7 +65,8 @@ TEST(Walk, VisitsEveryCellThatTheRayIsInAndNoOther) {
                 ++next;
             } else {
                 ASSERT_GT(i, 0u);
-                EXPECT_EQ(std::abs(visited[i].x - visited[i - 1].x) + std::abs(visited[i].y - visited[i - 1].y), 1);
+                EXPECT_EQ(
+                    std::abs(visited[i].x - visited[i - 1].x) + std::abs(visited[i].y - visited[i - 1].y), 1);
             }
         }
         EXPECT_GE(next + 3, expected.size());
@@ -205,8 +207,9 @@ TEST(BufferClasses, ALinkHasABufferForJustTheRaysThatCrossIt) {
         for (const Side side : {Side::east, Side::south, Side::west, Side::north}) {
             const bool horizontal = side == Side::east || side == Side::west;
             const auto seen = classes_seen(networks, side);
-            const std::size_t expected = networks == Networks::half ? (horizontal ? 1 : 2)
-                                         : networks == Networks::quadrant ? 2 : 1;
+            const std::size_t expected = networks == Networks::half       ? (horizontal ? 1 : 2)
+                                         : networks == Networks::quadrant ? 2
+                                                                          : 1;
             EXPECT_EQ(seen.size(), expected);
             for (int index = 0; index < classes.count; ++index) {
                 const bool answers = index == classes.answer && networks != Networks::shared;

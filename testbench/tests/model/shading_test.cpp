@@ -34,7 +34,8 @@ TEST(Shading, MirrorsByTheLawOfReflection) {
         const dvec3 out = reflect_direction(point);
         EXPECT_NEAR(glm::length(out), 1, 1e-12);
         EXPECT_NEAR(glm::dot(out, point.normal), -glm::dot(way, point.normal), 1e-12);
-        EXPECT_LT(glm::length(glm::cross(out - way, point.normal)), 1e-12);  // only the normal's share changes
+        EXPECT_LT(glm::length(glm::cross(out - way, point.normal)),
+                  1e-12);  // only the normal's share changes
     }
 }
 
@@ -58,9 +59,9 @@ TEST(Shading, RefractsBySnellsLawBothWaysOrReflectsTotally) {
         }
         EXPECT_NEAR(glm::length(out), 1, 1e-12);
         EXPECT_NEAR(glm::length(glm::cross(out, point.normal)), sine_out, 1e-9);
-        EXPECT_LE(glm::dot(out, point.normal), 1e-12);  // on the other side
+        EXPECT_LE(glm::dot(out, point.normal), 1e-12);                       // on the other side
         EXPECT_NEAR(glm::dot(glm::cross(way, point.normal), out), 0, 1e-9);  // in the plane of incidence
-        if (std::abs(sine_out) < 0.999) {  // the way back is the same way
+        if (std::abs(sine_out) < 0.999) {                                    // the way back is the same way
             const ShadePoint back = shade_point(dvec3(0), -out, normal, normal);
             dvec3 again;
             ASSERT_TRUE(refract_direction(back, ior, again));
@@ -91,7 +92,8 @@ TEST(Shading, AddsAmbientDiffuseAndHighlightOfEveryLitSource) {
         const ShadePoint point = shade_point(dvec3(1, 2, 3), way, normal, normal);
         std::vector<Source> sources;
         for (int i = 0; i < 5; ++i) {
-            sources.push_back({hand_made::random_point(random.engine(), -9, 9), hand_made::random_point(random.engine(), 0, 1)});
+            sources.push_back({hand_made::random_point(random.engine(), -9, 9),
+                               hand_made::random_point(random.engine(), 0, 1)});
         }
         const std::uint64_t lit = std::uint64_t(random.whole(0, 31));
         dvec3 expected = 0.1 * m.diffuse * m.colour;
@@ -100,7 +102,8 @@ TEST(Shading, AddsAmbientDiffuseAndHighlightOfEveryLitSource) {
             const double cosine = glm::dot(light, point.normal);
             if (!(lit >> s & 1) || cosine <= 0) continue;
             const double along = std::max(glm::dot(glm::reflect(way, point.normal), light), 0.0);
-            expected += sources[s].intensity * (m.diffuse * cosine * m.colour + dvec3(m.specular * std::pow(along, m.shine)));
+            expected += sources[s].intensity *
+                        (m.diffuse * cosine * m.colour + dvec3(m.specular * std::pow(along, m.shine)));
         }
         const dvec3 got = local_intensity(point, m, sources.data(), sources.size(), lit);
         EXPECT_LT(glm::length(got - expected), 1e-9);
@@ -131,7 +134,9 @@ TEST(Shading, CombinesWithTheSharesOfMirrorAndTransmission) {
     Material m = shiny();
     m.transmit = 0.3;
     const dvec3 local(0.1), mirrored(0.5), through(0.25);
-    EXPECT_LT(glm::length(combine_intensity(local, m, mirrored, through) - dvec3(0.1 + 0.4 * 0.5 + 0.3 * 0.25)), 1e-15);
+    EXPECT_LT(
+        glm::length(combine_intensity(local, m, mirrored, through) - dvec3(0.1 + 0.4 * 0.5 + 0.3 * 0.25)),
+        1e-15);
     m.mirror = false;  // an OBJ material with a highlight only
     EXPECT_LT(glm::length(combine_intensity(local, m, mirrored, through) - dvec3(0.1 + 0.3 * 0.25)), 1e-15);
 }

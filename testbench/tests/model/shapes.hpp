@@ -35,16 +35,21 @@ inline Axes attitude(Random& random, int kind) {
     const double c = std::cos(turn);
     const double s = std::sin(turn);
     switch (kind) {
-        case 0: return {{c, s, 0}, {-s, c, 0}, {0, 0, 1}};                    // faces the viewer
-        case 1: return {{0, c, s}, {0, -s, c}, {1, 0, 0}};                    // wall across x
-        case 2: return {{c, 0, s}, {s, 0, -c}, {0, 1, 0}};                    // floor
-        case 3: return {{c, s, 0}, {0, 0, 1}, {s, -c, 0}};                    // upright, edge-on, any direction
-        case 4: {                                                             // nearly edge-on
+        case 0:
+            return {{c, s, 0}, {-s, c, 0}, {0, 0, 1}};  // faces the viewer
+        case 1:
+            return {{0, c, s}, {0, -s, c}, {1, 0, 0}};  // wall across x
+        case 2:
+            return {{c, 0, s}, {s, 0, -c}, {0, 1, 0}};  // floor
+        case 3:
+            return {{c, s, 0}, {0, 0, 1}, {s, -c, 0}};  // upright, edge-on, any direction
+        case 4: {                                       // nearly edge-on
             const dvec3 u{c, s, 0};
             const dvec3 v = glm::normalize(dvec3(-s * 1e-4, c * 1e-4, 1));
             return {u, v, glm::cross(u, v)};
         }
-        default: return turned(random);
+        default:
+            return turned(random);
     }
 }
 
@@ -131,12 +136,14 @@ inline CellScene empty_cube(int width, int height, double depth, int levels) {
 }
 
 /// The six faces of centre ± the axes times `half`; fronts outwards, or inwards.
-inline void add_block(CellScene& scene, const dvec3& centre, const Axes& axes, const dvec3& half, bool inward = false) {
+inline void add_block(CellScene& scene, const dvec3& centre, const Axes& axes, const dvec3& half,
+                      bool inward = false) {
     std::array<dvec3, 8> corner;
     for (int i = 0; i < 8; ++i) {
         corner[std::size_t(i)] = centre + axes(half * dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
     }
-    constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                 {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (const auto& face : faces) {
         std::vector<dvec3> outline;
         for (const int i : face) outline.push_back(corner[std::size_t(i)]);
@@ -164,7 +171,8 @@ inline Closed block(Random& random, bool aligned) {
     }
     add_block(closed.scene, centre, axes, half);
     closed.inside = [=](Random& r) {
-        return centre + axes(half * dvec3(r.uniform(-0.98, 0.98), r.uniform(-0.98, 0.98), r.uniform(-0.98, 0.98)));
+        return centre +
+               axes(half * dvec3(r.uniform(-0.98, 0.98), r.uniform(-0.98, 0.98), r.uniform(-0.98, 0.98)));
     };
     return closed;
 }
@@ -230,8 +238,8 @@ inline Closed room(Random& random) {
     return closed;
 }
 
-/// A direction whose slope dz/dx is log-uniform from 1/1000 to 1000, sometimes 0, sometimes axial, often in a plane
-/// of the axes.
+/// A direction whose slope dz/dx is log-uniform from 1/1000 to 1000, sometimes 0, sometimes axial, often in a
+/// plane of the axes.
 inline dvec3 sloped_direction(Random& random) {
     if (random.chance(0.05)) return {0, 0, random.chance(0.5) ? 1 : -1};
     const double turn = random.uniform(0, 2 * pi);

@@ -39,7 +39,8 @@ TEST(Tessellation, EveryEdgeOfASphereIsSharedByTwoFacetsBitForBit) {
         SCOPED_TRACE(property::rerun(seed));
         Random random(seed);
         const Frame frame = frame_of(random);
-        SpherePrimitive sphere{hand_made::random_point(random.engine(), -5, 5), random.uniform(0.1, 3), random.chance(0.5)};
+        SpherePrimitive sphere{hand_made::random_point(random.engine(), -5, 5), random.uniform(0.1, 3),
+                               random.chance(0.5)};
         const auto facets = tessellate({0, sphere}, 7, frame, random.uniform(0.02, 2));
         ASSERT_FALSE(facets.empty());
         EXPECT_EQ(facets.front().id, 7u);
@@ -162,7 +163,8 @@ TEST(Tessellation, PatchBecomesTrianglesThatKeepTheNormalsOfItsVertices) {
         area += shapes::area_of(facet.vertices);
         EXPECT_EQ(facet.object, 3u);
         for (const dvec3& v : facet.vertices) {
-            const auto at = std::find(patch.vertices.begin(), patch.vertices.end(), v) - patch.vertices.begin();
+            const auto at =
+                std::find(patch.vertices.begin(), patch.vertices.end(), v) - patch.vertices.begin();
             EXPECT_LT(glm::length(facet.normal.at({v.x, v.y}) - patch.normals[std::size_t(at)]), 1e-12);
         }
     }

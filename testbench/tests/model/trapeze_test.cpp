@@ -36,13 +36,16 @@ void expect_tiled(const Polygon& polygon, Random& random) {
             EXPECT_GE(p.y, t.top);
             EXPECT_LE(p.y, t.bottom);
             // Every corner lies on or inside every edge.
-            for (int i = 0; i < t.edge_count; ++i) EXPECT_GT(t.edges[std::size_t(i)].at(project(p, t.drop)), -1e-8);
+            for (int i = 0; i < t.edge_count; ++i)
+                EXPECT_GT(t.edges[std::size_t(i)].at(project(p, t.drop)), -1e-8);
         }
     }
-    EXPECT_NEAR(area, shapes::area_of(polygon.vertices), 1e-7 * std::max(1.0, shapes::area_of(polygon.vertices)));
+    EXPECT_NEAR(area, shapes::area_of(polygon.vertices),
+                1e-7 * std::max(1.0, shapes::area_of(polygon.vertices)));
     for (int i = 0; i < 200; ++i) {
         const dvec2 margin = 0.1 * (high - low);
-        const dvec2 p{random.uniform(low.x - margin.x, high.x + margin.x), random.uniform(low.y - margin.y, high.y + margin.y)};
+        const dvec2 p{random.uniform(low.x - margin.x, high.x + margin.x),
+                      random.uniform(low.y - margin.y, high.y + margin.y)};
         const shapes::Place place = shapes::place_of(outline, p);
         if (place.distance < 1e-6) continue;
         int holders = 0;
@@ -78,9 +81,12 @@ TEST(Trapezes, TileCombsWhoseCornersLineUpInRows) {
             const dvec3 unit[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
             const int first = random.whole(0, 2);
             const int second = (first + random.whole(1, 2)) % 3;
-            axes = {unit[first], (random.chance(0.5) ? 1.0 : -1.0) * unit[second], glm::cross(unit[first], unit[second])};
+            axes = {unit[first], (random.chance(0.5) ? 1.0 : -1.0) * unit[second],
+                    glm::cross(unit[first], unit[second])};
         }
-        expect_tiled(make_polygon(3, 4, shapes::lift(shapes::comb(random.whole(2, 30), 7.5), axes, {16, 16, 16})), random);
+        expect_tiled(
+            make_polygon(3, 4, shapes::lift(shapes::comb(random.whole(2, 30), 7.5), axes, {16, 16, 16})),
+            random);
         if (::testing::Test::HasFailure()) return;
     }
 }
@@ -101,7 +107,8 @@ TEST(Trapezes, ARectangleIsOneAndATriangleAtMostTwo) {
     EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {4, 2, 5}, {2, 4, 6}})).size(), 2u);
     EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {4, 1, 5}, {2, 4, 6}})).size(), 1u);
     // Corners on straight sides cost cuts, no area.
-    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {2, 1, 5}, {4, 1, 5}, {4, 3, 5}, {1, 3, 5}})).size(), 1u);
+    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {2, 1, 5}, {4, 1, 5}, {4, 3, 5}, {1, 3, 5}})).size(),
+              1u);
 }
 
 }  // namespace

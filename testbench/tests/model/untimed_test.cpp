@@ -10,15 +10,18 @@ using property::Random;
 
 /// A room with a mirror ball, a glass block and two sources, seen by a viewer at infinity.
 CellScene still_life(Random& random) {
-    CellScene scene = shapes::empty_cube(random.whole(1, 20), random.whole(1, 20), random.uniform(8, 20), random.whole(8, 512));
+    CellScene scene = shapes::empty_cube(random.whole(1, 20), random.whole(1, 20), random.uniform(8, 20),
+                                         random.whole(8, 512));
     scene.background = {0.1, 0.2, 0.3};
     const std::uint32_t mirror = hand_made::add_object(scene, hand_made::mirror(0.9));
     const std::uint32_t glass = hand_made::add_object(scene, hand_made::glass(0.8, 1.4));
     const dvec3 size = scene.frame.cube().high;
     hand_made::add_rectangle(scene, 0, {0, 0, size.z * 0.95}, {size.x, 0, 0}, {0, size.y, 0});
-    hand_made::add_ball(scene, mirror, size * dvec3(0.3, 0.6, 0.5), 9, 6, [&](const dvec3&) { return 0.2 * size.x; });
+    hand_made::add_ball(scene, mirror, size * dvec3(0.3, 0.6, 0.5), 9, 6,
+                        [&](const dvec3&) { return 0.2 * size.x; });
     const std::size_t first = scene.polygons.size();
-    shapes::add_block(scene, size * dvec3(0.7, 0.4, 0.5), shapes::turned(random), size * dvec3(0.12, 0.12, 0.1));
+    shapes::add_block(scene, size * dvec3(0.7, 0.4, 0.5), shapes::turned(random),
+                      size * dvec3(0.12, 0.12, 0.1));
     for (std::size_t i = first; i < scene.polygons.size(); ++i) scene.polygons[i].object = glass;
     scene.sources.push_back({size * dvec3(0.2, 0.1, 0.05), dvec3(0.7)});
     scene.sources.push_back({size * dvec3(0.9, -0.2, 0.3), dvec3(0.4, 0.5, 0.6)});
@@ -45,7 +48,8 @@ TEST(Untimed, MemoAndPrecastGiveTheSamePictureBitForBitAtEveryRung) {
         settings.shadows = Shadows::precast;
         const auto precast = image_hash(UntimedMachine(scene, settings, nullptr).render());
         settings.shadows = Shadows::memo;
-        EXPECT_EQ(image_hash(UntimedMachine(scene, settings, nullptr).render()), precast) << "rung " << int(settings.hit);
+        EXPECT_EQ(image_hash(UntimedMachine(scene, settings, nullptr).render()), precast)
+            << "rung " << int(settings.hit);
     }
 }
 

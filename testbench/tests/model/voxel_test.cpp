@@ -70,7 +70,8 @@ TEST(Voxels, EveryPointOfAPolygonIsHitInItsCellAtEveryRungButDepth) {
                 const dvec3 local = p - dvec3(x, y, 0);
                 for (const Voxel& voxel : store.voxels) {
                     EXPECT_NEAR(glm::dot(voxel.plane.n, local), voxel.plane.c, 1e-9);
-                    const bool in_run = voxel.near_level * level <= p.z + 1e-7 && voxel.far_level * level >= p.z - 1e-7;
+                    const bool in_run =
+                        voxel.near_level * level <= p.z + 1e-7 && voxel.far_level * level >= p.z - 1e-7;
                     // A short ray through the point, across the plane, must hit.
                     constexpr double reach = 1e-3;
                     Ray ray;
@@ -79,7 +80,8 @@ TEST(Voxels, EveryPointOfAPolygonIsHitInItsCellAtEveryRungButDepth) {
                     const bool hit = hit_voxel(store, voxel, ray, 2 * reach, rung, level).has_value();
                     held = held || (in_run && hit);
                 }
-                ASSERT_TRUE(held) << "rung " << int(rung) << ", point (" << p.x << ", " << p.y << ", " << p.z << ")";
+                ASSERT_TRUE(held) << "rung " << int(rung) << ", point (" << p.x << ", " << p.y << ", " << p.z
+                                  << ")";
             }
         }
     }
@@ -92,7 +94,9 @@ TEST(Voxels, AtDepthAreMadeOnlyWhereThePixelCentreIsCovered) {
         Random random(seed);
         CellScene scene = cube(random);
         const shapes::Axes axes = shapes::attitude(random, random.chance(0.5) ? 0 : 5);
-        hand_made::add_polygon(scene, 0, shapes::lift(shapes::star(random, random.whole(3, 30), random.uniform(1, 8)), axes, {10, 9, 12}));
+        hand_made::add_polygon(
+            scene, 0,
+            shapes::lift(shapes::star(random, random.whole(3, 30), random.uniform(1, 8)), axes, {10, 9, 12}));
         const Polygon& polygon = scene.polygons[0];
         if (std::abs(polygon.plane.n.z) < 1e-3) continue;
         const auto outline = shapes::projected(polygon.vertices, 2);
@@ -105,7 +109,9 @@ TEST(Voxels, AtDepthAreMadeOnlyWhereThePixelCentreIsCovered) {
                 EXPECT_EQ(!voxels.empty(), place.inside) << x << ", " << y;
                 if (voxels.empty()) continue;
                 ++stored;
-                const double z = (polygon.plane.c - polygon.plane.n.x * (x + 0.5) - polygon.plane.n.y * (y + 0.5)) / polygon.plane.n.z;
+                const double z =
+                    (polygon.plane.c - polygon.plane.n.x * (x + 0.5) - polygon.plane.n.y * (y + 0.5)) /
+                    polygon.plane.n.z;
                 EXPECT_EQ(voxels[0].near_level, int(z / scene.frame.level()));
                 EXPECT_EQ(voxels[0].far_level, voxels[0].near_level + 1);
             }
@@ -151,7 +157,8 @@ TEST(Spans, AdvancedToACellAgreeWithOneCutFromThere) {
                     const dvec2 probe{0.3, 0.7};
                     EXPECT_LT(glm::length(span->normal.at(probe) - trapeze.normal.at(probe + shift)), 1e-9);
                     for (int i = 0; i < span->edge_count; ++i) {
-                        EXPECT_NEAR(span->edges[std::size_t(i)].at(probe), trapeze.edges[std::size_t(i)].at(probe + shift), 1e-9);
+                        EXPECT_NEAR(span->edges[std::size_t(i)].at(probe),
+                                    trapeze.edges[std::size_t(i)].at(probe + shift), 1e-9);
                     }
                     if (span->x == span->last) break;
                 }
@@ -180,7 +187,8 @@ TEST(Voxels, PiecesOfOnePolygonShareOneVoxelPerCell) {
                     EXPECT_LE(voxel.point.x, 1);
                     EXPECT_GE(voxel.point.y, 0);
                     EXPECT_LE(voxel.point.y, 1);
-                    EXPECT_NEAR(glm::dot(voxel.plane.n, voxel.point), voxel.plane.c, 1e-8) << "its point is on the plane";
+                    EXPECT_NEAR(glm::dot(voxel.plane.n, voxel.point), voxel.plane.c, 1e-8)
+                        << "its point is on the plane";
                 }
             }
         }
@@ -215,7 +223,8 @@ TEST(Voxels, ThatDoNotFitAreCountedOnceEach) {
         LoadCounts limited;
         const auto cells = load_array(scene, settings, &limited);
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            const std::size_t fits = std::min(unlimited[i].voxels.size(), std::size_t(settings.voxel_capacity));
+            const std::size_t fits =
+                std::min(unlimited[i].voxels.size(), std::size_t(settings.voxel_capacity));
             EXPECT_EQ(cells[i].voxels.size(), fits);
             EXPECT_EQ(cells[i].overflowed, unlimited[i].voxels.size() - fits) << "cell " << i;
         }

@@ -16,7 +16,7 @@ struct Found {
     std::uint32_t voxel = 0;
     int x = 0;  ///< the cell
     int y = 0;
-    Ray ray;     ///< as it stood in that cell
+    Ray ray;  ///< as it stood in that cell
     CellHit hit;
 };
 
@@ -32,14 +32,20 @@ inline Ray ray_at(const CellScene& scene, const dvec3& origin, const dvec3& dire
 }
 
 /// The first hit, or nothing if the ray leaves the cube.
-inline std::optional<Found> walk(const std::vector<CellStore>& cells, const Context& context, Ray ray, int x, int y) {
+inline std::optional<Found> walk(const std::vector<CellStore>& cells, const Context& context, Ray ray, int x,
+                                 int y) {
     const Frame& frame = context.scene.frame;
     double travelled = 0;
     for (int hops = 0; hops <= 2 * (frame.width + frame.height) + 4; ++hops) {
         const CellStore& store = cells[std::size_t(y) * std::size_t(frame.width) + std::size_t(x)];
         const Visit visit = visit_cell(store, ray, context);
         if (visit.event == Visit::Event::hit) {
-            return Found{travelled + visit.hit.t, store.voxels[visit.hit.voxel].polygon, visit.hit.voxel, x, y, ray,
+            return Found{travelled + visit.hit.t,
+                         store.voxels[visit.hit.voxel].polygon,
+                         visit.hit.voxel,
+                         x,
+                         y,
+                         ray,
                          visit.hit};
         }
         if (visit.event != Visit::Event::forward) return std::nullopt;

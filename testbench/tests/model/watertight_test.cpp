@@ -26,8 +26,8 @@ struct Shot {
     double until;  ///< where it is inside the surface: it must have hit something by then
 };
 
-/// Half of the rays start inside and must meet the surface anywhere; half come from the cube's border, where there is
-/// a way, and must meet it before they reach the point inside.
+/// Half of the rays start inside and must meet the surface anywhere; half come from the cube's border, where
+/// there is a way, and must meet it before they reach the point inside.
 Shot shoot(const Closed& closed, bool has_outside, Random& random) {
     const dvec3 inside = closed.inside(random);
     const dvec3 direction = shapes::sloped_direction(random);
@@ -61,7 +61,8 @@ Score shoot_at(const Closed& closed, HitTest rung, int rays, Random& random) {
             text.precision(17);
             text << "from (" << shot.origin.x << ", " << shot.origin.y << ", " << shot.origin.z << ") along ("
                  << shot.direction.x << ", " << shot.direction.y << ", " << shot.direction.z << "), "
-                 << (found ? "hit at " + std::to_string(found->t) + " instead of before " + std::to_string(shot.until)
+                 << (found ? "hit at " + std::to_string(found->t) + " instead of before " +
+                                 std::to_string(shot.until)
                            : std::string("no hit"));
             score.first = text.str();
         }
@@ -76,8 +77,8 @@ void expect_no_leak(Closed (*make)(Random&), std::uint64_t first_seed, int surfa
         for (const HitTest rung : watertight_rungs) {
             Random random(seed);
             const Score score = shoot_at(closed, rung, rays, random);
-            EXPECT_EQ(score.leaks, 0) << "of " << score.rays << " rays at rung " << int(rung) << "; the first "
-                                      << score.first << "; " << property::rerun(seed);
+            EXPECT_EQ(score.leaks, 0) << "of " << score.rays << " rays at rung " << int(rung)
+                                      << "; the first " << score.first << "; " << property::rerun(seed);
         }
     }
 }
@@ -111,10 +112,12 @@ Closed whole_cube(Random& random) {
     return closed;
 }
 
-TEST(Watertight, NoRayLeavesARoomWhoseWallsAreTheFacesOfTheCube) { expect_no_leak(whole_cube, 6000, 20, 500); }
+TEST(Watertight, NoRayLeavesARoomWhoseWallsAreTheFacesOfTheCube) {
+    expect_no_leak(whole_cube, 6000, 20, 500);
+}
 
-/// A block whose corners are rounded as a scene file with few digits has them: its faces are not quite planar, within
-/// what the readers take as planar (1e-4 of the size).
+/// A block whose corners are rounded as a scene file with few digits has them: its faces are not quite
+/// planar, within what the readers take as planar (1e-4 of the size).
 Closed rounded_block(Random& random) {
     Closed closed = shapes::block(random, false);
     const std::vector<Polygon> faces = std::move(closed.scene.polygons);
@@ -128,8 +131,8 @@ Closed rounded_block(Random& random) {
 }
 
 TEST(Watertight, NoMoreThanTheOddRayPassesThroughABlockOfRoundedCorners) {
-    // Planes that miss their corners by 1e-4 cells leave cracks of that width between faces: about 1e-4 of the rays
-    // that pass an edge in its cell. Holes inside of a face would let through far more.
+    // Planes that miss their corners by 1e-4 cells leave cracks of that width between faces: about 1e-4 of
+    // the rays that pass an edge in its cell. Holes inside of a face would let through far more.
     int rays = 0;
     std::string first;
     int leaks = 0;
@@ -145,9 +148,9 @@ TEST(Watertight, NoMoreThanTheOddRayPassesThroughABlockOfRoundedCorners) {
     EXPECT_LE(leaks, rays / 20000) << "of " << rays << " rays; the first " << first;
 }
 
-/// A wall nearly parallel to z with corners off its plane by up to a thousandth of a cell, a hundred-thousandth of its
-/// size: ten times flatter than what the readers take as planar. The rays cross it near where it passes from one column
-/// of cells to the next.
+/// A wall nearly parallel to z with corners off its plane by up to a thousandth of a cell, a
+/// hundred-thousandth of its size: ten times flatter than what the readers take as planar. The rays cross it
+/// near where it passes from one column of cells to the next.
 TEST(Watertight, AWallWhoseCornersMissItsPlaneByAThousandthOfACellHasNoHole) {
     int rays = 0;
     int leaks = 0;
@@ -161,7 +164,10 @@ TEST(Watertight, AWallWhoseCornersMissItsPlaneByAThousandthOfACellHasNoHole) {
         const double near = border - random.uniform(0.1, 0.9) * lean;
         const double far = near + lean;
         hand_made::add_polygon(scene, 0,
-                               {{near + off(), 0.5, 2}, {far + off(), 0.5, 98}, {far + off(), 15.5, 98}, {near + off(), 15.5, 2}});
+                               {{near + off(), 0.5, 2},
+                                {far + off(), 0.5, 98},
+                                {far + off(), 15.5, 98},
+                                {near + off(), 15.5, 2}});
         const double crosses = 2 + 96 * (border - near) / lean;
         for (const HitTest rung : {HitTest::plane, HitTest::mask, HitTest::edge}) {
             const PictureSettings settings = settings_for(scene, rung);
@@ -177,13 +183,67 @@ TEST(Watertight, AWallWhoseCornersMissItsPlaneByAThousandthOfACellHasNoHole) {
                 if (leaks++ > 0) continue;
                 std::ostringstream text;
                 text.precision(17);
-                text << "rung " << int(rung) << ", ray from (0.25, " << origin.y << ", " << origin.z << ") along x, wall";
-                for (const dvec3& p : scene.polygons[0].vertices) text << " (" << p.x << ", " << p.y << ", " << p.z << ")";
+                text << "rung " << int(rung) << ", ray from (0.25, " << origin.y << ", " << origin.z
+                     << ") along x, wall";
+                for (const dvec3& p : scene.polygons[0].vertices)
+                    text << " (" << p.x << ", " << p.y << ", " << p.z << ")";
                 first = text.str() + "; " + property::rerun(seed);
             }
         }
     }
     EXPECT_EQ(leaks, 0) << "of " << rays << " rays; the first: " << first;
+}
+
+/// Rays that meet the surface exactly on an edge or in a corner: two or more polygons have the point, none
+/// may miss it.
+TEST(Watertight, NoRaySlipsThroughAnEdgeOrACorner) {
+    for (const std::uint64_t seed : property::seeds(7800, 40)) {
+        Random shape(seed);
+        const Closed closed = seed % 4 == 0   ? shapes::ball(shape)
+                              : seed % 4 == 1 ? shapes::block(shape, false)
+                              : seed % 4 == 2 ? shapes::block(shape, true)
+                                              : shapes::wedge(shape);
+        for (const HitTest rung : watertight_rungs) {
+            const PictureSettings settings = settings_for(closed.scene, rung);
+            const auto cells = load_array(closed.scene, settings);
+            const Context context{closed.scene, settings};
+            Random random(seed);
+            for (int i = 0; i < 400; ++i) {
+                const auto& outline =
+                    closed.scene.polygons[std::size_t(random.whole(0, int(closed.scene.polygons.size()) - 1))]
+                        .vertices;
+                const std::size_t corner = std::size_t(random.whole(0, int(outline.size()) - 1));
+                const double share = random.chance(0.5) ? 0 : random.uniform(0, 1);
+                const dvec3 target = glm::mix(outline[corner], outline[(corner + 1) % outline.size()], share);
+                const dvec3 origin = closed.inside(random);
+                int x = 0;
+                int y = 0;
+                const Ray ray = walker::ray_at(closed.scene, origin, glm::normalize(target - origin), x, y);
+                const auto found = walker::walk(cells, context, ray, x, y);
+                ASSERT_TRUE(found && found->t < glm::length(target - origin) + 1e-5)
+                    << "rung " << int(rung) << ", target (" << target.x << ", " << target.y << ", "
+                    << target.z << "); " << property::rerun(seed);
+            }
+        }
+    }
+}
+
+TEST(Watertight, NoRayPassesThroughABallInALargeArray) {
+    for (const std::uint64_t seed : property::seeds(7900, 1)) {
+        Closed closed;
+        closed.scene = shapes::empty_cube(400, 300, 1000, 1024);
+        const dvec3 centre{200.3, 150.7, 480.1};
+        hand_made::add_ball(closed.scene, 0, centre, 60, 30, [](const dvec3&) { return 140.0; });
+        closed.inside = [=](Random& r) {
+            return centre + r.uniform(0, 130) * hand_made::random_direction(r.engine());
+        };
+        for (const HitTest rung : {HitTest::plane, HitTest::mask, HitTest::edge}) {
+            Random random(seed);
+            const Score score = shoot_at(closed, rung, 5000, random);
+            EXPECT_EQ(score.leaks, 0) << "of " << score.rays << " rays at rung " << int(rung)
+                                      << "; the first " << score.first << "; " << property::rerun(seed);
+        }
+    }
 }
 
 /// Rays that bounce inside a closed room, sent as the machine sends its reflected rays.
@@ -201,16 +261,19 @@ TEST(Watertight, NoReflectedRayLeavesAClosedRoom) {
         for (int i = 0; i < 200; ++i) {
             int x = 0;
             int y = 0;
-            Ray ray = walker::ray_at(closed.scene, closed.inside(random), shapes::sloped_direction(random), x, y);
+            Ray ray =
+                walker::ray_at(closed.scene, closed.inside(random), shapes::sloped_direction(random), x, y);
             for (int bounce = 0; bounce < 10; ++bounce) {
                 const auto found = walker::walk(cells, context, ray, x, y);
-                ASSERT_TRUE(found) << "bounce " << bounce << " of ray " << i << ": from (" << x + ray.position.x << ", "
-                                   << y + ray.position.y << ", " << ray.position.z << ") along (" << ray.direction.x
-                                   << ", " << ray.direction.y << ", " << ray.direction.z << "); "
+                ASSERT_TRUE(found) << "bounce " << bounce << " of ray " << i << ": from ("
+                                   << x + ray.position.x << ", " << y + ray.position.y << ", "
+                                   << ray.position.z << ") along (" << ray.direction.x << ", "
+                                   << ray.direction.y << ", " << ray.direction.z << "); "
                                    << property::rerun(seed);
                 x = found->x;
                 y = found->y;
-                const CellStore& store = cells[std::size_t(y) * std::size_t(closed.scene.frame.width) + std::size_t(x)];
+                const CellStore& store =
+                    cells[std::size_t(y) * std::size_t(closed.scene.frame.width) + std::size_t(x)];
                 const HitSetup setup = set_up_hit(context, store, found->ray, found->hit, x, y);
                 ASSERT_TRUE(setup.reflects);
                 ray = reflected_ray(context, store, found->ray, found->hit, setup, x, y);

@@ -207,8 +207,8 @@ TEST(Configuration, UnknownKeysAreNamedWithTheirFile) {
     for (const std::string key : {"nonsense", "max_depth", "Depth", "h", "o", "help", "config"}) {
         expect_configuration_refused(key + " = 1\n", {"run.toml", "'" + key + "'"});
     }
-    expect_configuration_refused("[render]\ndepth = 5\n", {"run.toml", "render.depth"});
-    expect_configuration_refused("depth = 5\n[machine]\nbuffer = 2\n", {"run.toml", "machine.buffer"});
+    expect_configuration_refused("[render]\ndepth = 5\n", {"run.toml:1", "'render'"});
+    expect_configuration_refused("depth = 5\n[machine]\nbuffer = 2\n", {"run.toml:2", "'machine'"});
 }
 
 TEST(Configuration, WrongValuesAreNamedWithTheirFile) {
@@ -224,9 +224,9 @@ TEST(Configuration, WrongValuesAreNamedWithTheirFile) {
 TEST(Configuration, ValuesThatAreNotThereOrTooManyAreRefused) {
     expect_configuration_refused("depth = [1, 2]\n", {"depth"});
     expect_configuration_refused("hit = \"\"\n", {"hit"});
-    expect_configuration_refused("depth\n", {"depth"});
+    expect_configuration_refused("depth\n", {"run.toml:1"});
     expect_configuration_refused("= 5\n", {"run.toml"});
-    expect_configuration_refused("depth = 5 6\n", {"depth"});
+    expect_configuration_refused("depth = 5 6\n", {"run.toml:1"});
 }
 
 TEST(Configuration, AFolderIsNoConfiguration) {

@@ -1,0 +1,102 @@
+#include "testbench/raycell/configuration.hpp"
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "testbench/raycell/options.hpp"
+
+namespace raycell {
+namespace {
+
+class Reader {
+  public:
+    Reader(const std::string& path, const CLI::App& app) : path_(path), app_(app) {}
+
+    std::vector<std::string> arguments() {
+        for (const auto& [key, node] : parse()) option(std::string(key.str()), node);
+        return std::move(arguments_);
+    }
+
+  private:
+    toml::table parse() const {
+        std::error_code ignored;
+        std::ifstream file(path_, std::ios::binary);
+        if (!std::filesystem::is_regular_file(path_, ignored) || !file) {
+            throw UsageError(path_ + ": can't be read; expected a configuration file");
+        }
+        std::ostringstream text;
+        text << file.rdbuf();
+        try {
+            return toml::parse(text.str());
+        } catch (const toml::parse_error& error) {
+            fail(error.source(), printable(error.description(), 120) + "; expected TOML");
+        }
+    }
+
+    [[noreturn]] void fail(const toml::source_region& where, const std::string& what) const {
+        throw UsageError(path_ + ":" + std::to_string(where.begin.line) + ": " + what);
+    }
+
+    void option(const std::string& key, const toml::node& node) {
+        const bool word = key.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos;
+        const CLI::Option* known = word ? app_.get_option_no_throw("--" + key) : nullptr;
+        if (!known || key == "config" || key == "help") {
+            fail(node.source(), "unknown key '" + printable(key) + "'; keys are the options of '" + app_.get_name() +
+                                    "' without their dashes, see --help");
+        }
+        const bool flag = known->get_items_expected_max() == 0;
+        const bool several = known->get_items_expected_max() > 1;
+        if (flag != node.is_boolean()) {
+            fail(node.source(), "key '" + key + "': expected " + (flag ? "true or false" : "a number or a word"));
+        }
+        if (const toml::array* list = node.as_array()) {
+            if (!several) fail(node.source(), "key '" + key + "': expected one value, not a list");
+            for (const toml::node& item : *list) add(key, item);
+        } else {
+            add(key, node);
+        }
+    }
+
+    void add(const std::string& key, const toml::node& node) {
+        std::string word;
+        if (const auto text = node.value_exact<std::string>()) {
+            word = *text;
+            // Empty is the default of file names; as anything else it is an error, found by the option's own check.
+            if (word.empty() && (key == "view" || key == "scene")) return;
+        } else if (const auto whole = node.value_exact<std::int64_t>()) {
+            word = std::to_string(*whole);
+        } else if (const auto truth = node.value_exact<bool>()) {
+            word = *truth ? "true" : "false";
+        } else if (const auto real = node.value_exact<double>()) {
+            char digits[64];
+            word.assign(digits, std::to_chars(digits, digits + sizeof digits, *real).ptr);
+        } else {
+            fail(node.source(), "key '" + key + "': expected a number or a word");
+        }
+        arguments_.push_back("--" + key + "=" + word);
+    }
+
+    std::string path_;
+    const CLI::App& app_;
+    std::vector<std::string> arguments_;
+};
+
+}  // namespace
+
+std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app) {
+    return Reader(path, app).arguments();
+}
+
+std::string to_toml(const nlohmann::ordered_json& values) {
+    std::string text;
+    // JSON's strings, numbers and lists are TOML's too.
+    for (const auto& [key, value] : values.items()) {
+        text += key + " = " + value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    }
+    return text;
+}
+
+}  // namespace raycell

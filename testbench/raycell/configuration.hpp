@@ -1,0 +1,18 @@
+// Configuration files: TOML, key = value, the keys are the options' names.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace raycell {
+
+/// Turns a configuration file into arguments for `app`. Throws UsageError naming file, line and key for what is not
+/// TOML, for keys that the command doesn't know and for values of the wrong kind.
+std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app);
+
+/// The effective options as a configuration file that reproduces the run.
+std::string to_toml(const nlohmann::ordered_json& values);
+
+}  // namespace raycell

@@ -1,0 +1,160 @@
+// Cycle counts of small machines, derived by hand from the cost table and the bits of the messages.
+#include "../truth/hand_made.hpp"
+#include "elaboration.hpp"
+
+namespace raycell {
+namespace {
+
+/// A row of cells seen by a viewer at infinity. A square in the middle of cell 0, at depth 4, is lit by a
+/// source in the last cell: one shadow ray crosses all cells, and nothing else ever travels.
+struct Row {
+    explicit Row(int cells, double source_y = 0.5) {
+        expect_first_elaboration();
+        scene = hand_made::cube(cells, 1, 8);
+        scene.frame.depth_levels = 64;
+        scene.objects.push_back(hand_made::matt(0.8));
+        hand_made::add_rectangle(scene, 0, {0.25, 0.25, 4}, {0, 0.5, 0}, {0.5, 0, 0});
+        scene.sources.push_back({{cells - 0.5, source_y, 2}, dvec3(1)});
+        settings.width = cells;
+        settings.height = 1;
+        settings.depth_levels = 64;
+        settings.exterior = ExteriorMode::none;
+    }
+    RunResult run() {
+        Machine built("machine", scene, settings, machine, nullptr);
+        return built.run();
+    }
+    CellScene scene;
+    PictureSettings settings;
+    MachineSettings machine;
+};
+
+/// Shadow ray: type 3, nine words of 20, polygon 20, address (home 3 + 0, slot 3 + 1, child 6) 13, flags 3.
+constexpr int shadow_ray_bits = 3 + 9 * 20 + 20 + 13 + 3;
+/// Verdict: type 3, address 13.
+constexpr int verdict_bits = 3 + 13;
+
+TEST(TimedCycles, AShadowRayAndItsVerdictTakeTheCyclesOfTheCostTable) {
+    Row row(8);
+    const RunResult result = row.run();
+    ASSERT_EQ(result.verdict, Verdict::completed);
+    const int ray_link = (shadow_ray_bits + 19) / 20;
+    const int verdict_link = (verdict_bits + 19) / 20;
+    ASSERT_EQ(ray_link, 11);
+    ASSERT_EQ(verdict_link, 1);
+    // The primary ray starts in cycle 1. One voxel: walk 4, run 2, edge test 8, four edges of 2.
+    int t = 1 + (4 + 2 + 8 + 4 * 2);
+    // Set-up 20, linear normal 12, view of one source 16.
+    t += 20 + 12 + 16;
+    // The shadow ray passes the voxel that it leaves: walk 4, run 2. Then the link.
+    t += (4 + 2) + ray_link;
+    // Six empty cells: walk 4 and the link; in the eighth it ends after its walk step.
+    t += 6 * (4 + ray_link) + 4;
+    // The verdict starts there; six cells route it (1) and send it on; cell 0 delivers it, routed too (1).
+    t += verdict_link + 6 * (1 + verdict_link) + 1;
+    // Intensity 6 and one lit source 20; cell 0 is the pixel's own.
+    t += 6 + 20;
+    EXPECT_EQ(result.picture.at(0, 0).cycle, std::uint32_t(t));
+    EXPECT_EQ(result.picture.at(0, 0).hops, 14u);
+    // All the others see background: one walk step.
+    for (int x = 1; x < 8; ++x) EXPECT_EQ(result.picture.at(x, 0).cycle, 5u);
+    EXPECT_EQ(result.counters.rays.shadow, 1u);
+    EXPECT_EQ(result.counters.rays.ray_hops, 7u);
+    EXPECT_EQ(result.counters.rays.return_hops, 7u);
+}
+
+/// What a route cycle more adds tells how many are counted: one for each of seven inputs that the verdict
+/// passes.
+TEST(TimedCycles, EveryHopOfAReturnCostsTheRouteCyclesOfTheTable) {
+    Row row(8);
+    row.machine.costs.route_return = 11;
+    const RunResult result = row.run();
+    const int before_the_way_back = 1 + 22 + 48 + (6 + 11) + 6 * 15 + 4;
+    EXPECT_EQ(result.picture.at(0, 0).cycle, std::uint32_t(before_the_way_back + 1 + 6 * (11 + 1) + 11 + 26));
+}
+
+TEST(TimedCycles, APrecastRayTakesAWalkStepAndItsLinkCyclesPerHop) {
+    Row row(8);
+    row.settings.shadows = Shadows::precast;
+    const RunResult result = row.run();
+    ASSERT_EQ(result.verdict, Verdict::completed);
+    // In cell 0: from cycle 1, walk 4 and run 2; the link 11. Six cells of 4 + 11; the eighth ends it,
+    // silently, after 4.
+    EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 11 + 6 * 15 + 4));
+    EXPECT_EQ(result.counters.rays_silent, 1u);
+    EXPECT_EQ(result.counters.rays.precast, 1u);
+    // A hit that waits for nothing: test 22, set-up 48, shading 26, without a slot.
+    EXPECT_EQ(result.picture.at(0, 0).cycle, 1u + 22u + 48u + 26u);
+    EXPECT_EQ(result.ray_store_peak, 0);
+}
+
+TEST(TimedCycles, NarrowLinksTakeLonger) {
+    Row row(8);
+    row.settings.shadows = Shadows::precast;
+    row.machine.link_bits = 7;  // 219 bits: 32 cycles
+    const RunResult result = row.run();
+    EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 32 + 6 * (4 + 32) + 4));
+}
+
+/// A polygon over the whole row, no source.
+struct Loading : Row {
+    explicit Loading(int cells) : Row(cells) {
+        scene.sources.clear();
+        scene.polygons.clear();
+        hand_made::add_rectangle(scene, 0, {0.25, 0.25, 4}, {0, 0.5, 0}, {cells - 0.5, 0, 0});
+        settings.stage = RunStage::load;
+    }
+    /// Cycle in which the first cell sees the span, and the last one the end-of-scene mark.
+    Cycle expected() const {
+        const int columns = 2 * int(std::ceil(std::log2(settings.width)));
+        const int setup = 4, features = 4;  // link cycles of 69 and 76 bits
+        // Geometry, from cycle 1: set-up mark ready in 2 and sent; features wait for the wires until 6,
+        // arrive at 10; the polygon, taken up in 7, needs 1 + 40 and leaves in 48. 4 corners of 3 words and
+        // the features: 316 bits, 16 cycles.
+        const int polygon_arrives = 2 + setup + 1 + 1 + 40 + 16;
+        EXPECT_EQ(polygon_arrives, 64);
+        (void)features;
+        // Precomputation 20; a trapeze is 3 + 20 + 240 + 82 + 180 + 243 = 768 bits, 39 cycles.
+        const int trapeze_arrives = polygon_arrives + 20 + 39;
+        // The row cuts its span in 8; it is 3 + 20 + columns + 120 + 82 + 180 + 243 bits.
+        const int span_link = (648 + columns + 19) / 20;
+        const int span_arrives = trapeze_arrives + 8 + span_link;
+        // Each cell makes its voxel in 12 and passes the span on; the last one drops it.
+        const int span_done = span_arrives + (settings.width - 1) * (12 + span_link) + 12;
+        // With buffers of one message the end-of-scene mark follows once the last buffer is empty: it is sent
+        // in the cycle after, takes one cycle on the wires and one in the cell.
+        return Cycle(span_done + 1 + 1 + 1);
+    }
+};
+
+TEST(TimedCycles, OneSpanIsLoadedCellByCellInOneCell) {
+    Loading row(1);
+    const Cycle expected = row.expected();
+    const RunResult result = row.run();
+    EXPECT_EQ(result.load_cycles, expected);
+    EXPECT_EQ(result.voxels, 1u);
+}
+
+TEST(TimedCycles, OneSpanIsLoadedCellByCellInEight) {
+    Loading row(8);
+    const Cycle expected = row.expected();
+    const RunResult result = row.run();
+    EXPECT_EQ(result.load_cycles, expected);
+    EXPECT_EQ(result.voxels, 8u);
+    EXPECT_EQ(result.distribution.items, 1u);
+    EXPECT_EQ(result.precomputation.items, 1u);
+    EXPECT_EQ(result.geometry.items, 1u);
+    // Set-up, features, span and end mark, each over seven links.
+    EXPECT_EQ(result.counters.load_hops, 4u * 7u);
+    EXPECT_EQ(result.counters.loads_sent, 4u);
+    EXPECT_EQ(result.counters.loads_delivered, 4u);
+}
+
+TEST(TimedCycles, OneSpanIsLoadedCellByCellInThirty) {
+    Loading row(30);
+    const Cycle expected = row.expected();
+    EXPECT_EQ(row.run().load_cycles, expected);
+}
+
+}  // namespace
+}  // namespace raycell
