@@ -1,9 +1,8 @@
 // RC, the cell array: W x H cells, 4-connected (paper, section 2.4).
 #pragma once
 
-#include <systemc>
-
 #include <memory>
+#include <systemc>
 #include <vector>
 
 #include "cells/cell_module.hpp"

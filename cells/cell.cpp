@@ -44,7 +44,8 @@ Cycle Cell::step(Cycle now) {
     }
     finish_traversal(now);
     finish_shading(now);
-    // A reply that found no way goes before the answers that pass through: neither can be kept waiting for ever.
+    // A reply that found no way goes before the answers that pass through: neither can be kept waiting for
+    // ever.
     if (reply_waits_) {
         move_replies(now);
         move_answers(now);
@@ -67,7 +68,8 @@ void Cell::record(Cycle now, Event event, std::uint32_t detail) {
     }
 }
 
-// ---- traversal -----------------------------------------------------------------------------------------------
+// ---- traversal
+// -----------------------------------------------------------------------------------------------
 
 RayPacket* Cell::packet_at(std::size_t place) const {
     if (place < ray_inputs_.size()) {
@@ -127,7 +129,8 @@ void Cell::start_traversal(Cycle now) {
     }
 }
 
-// ---- routing -------------------------------------------------------------------------------------------------
+// ---- routing
+// -------------------------------------------------------------------------------------------------
 
 Side Cell::route(const Answer& answer) const {
     if (answer.home_x != x_) return answer.home_x > x_ ? Side::east : Side::west;
@@ -208,8 +211,8 @@ void Cell::move_answer(LinkIn& in, Cycle now) {
 }
 
 void Cell::move_rays(Cycle now) {
-    // Oldest first: a round robin over places, or one per output, lets a ray wait for ever for an output that others
-    // keep using (found as a livelock in spite of reserved slots).
+    // Oldest first: a round robin over places, or one per output, lets a ray wait for ever for an output that
+    // others keep using (found as a livelock in spite of reserved slots).
     std::vector<WaitingRay>& waiting = env_.waiting;
     waiting.clear();
     const std::size_t places = place_count();
@@ -228,7 +231,8 @@ void Cell::move_rays(Cycle now) {
 bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
     const Ray& ray = packet.ray;
     switch (packet.visit.event) {
-        case Visit::Event::forward: return forward(packet, place, now);
+        case Visit::Event::forward:
+            return forward(packet, place, now);
         case Visit::Event::hit:
             if (is_shadow(ray.kind)) return end_ray(packet, place, Answer::Kind::blocked, dvec3(0), now);
             return accept_hit(packet, place, now);
@@ -236,9 +240,9 @@ bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
             return end_ray(packet, place, Answer::Kind::lit, dvec3(0), now);
         case Visit::Event::leaves_cube:
             if (beyond_face(env_.context, face_of_depth(ray)) == Beyond::nothing) {
-                const bool ended = end_ray(packet, place, is_shadow(ray.kind) ? Answer::Kind::lit
-                                                                              : Answer::Kind::intensity,
-                                           env_.context.scene.background, now);
+                const bool ended =
+                    end_ray(packet, place, is_shadow(ray.kind) ? Answer::Kind::lit : Answer::Kind::intensity,
+                            env_.context.scene.background, now);
                 env_.counters.rays.lost += ended;
                 return ended;
             }
@@ -331,7 +335,8 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     return true;
 }
 
-// ---- reports -------------------------------------------------------------------------------------------------
+// ---- reports
+// -------------------------------------------------------------------------------------------------
 
 bool Cell::busy() const {
     return traversal_.packet || shading_.job != Shading::Job::idle || ray_store_.used() > 0 || own_ ||
@@ -363,16 +368,18 @@ std::vector<std::string> Cell::describe_blocked() const {
         if (!in) continue;
         const Message message = in->front(env_.classes.answer);
         if (message.kind != Message::Kind::answer) continue;
-        lines.push_back(at + "input " + sides[side] + ": answer to ray " + std::to_string(message.answer->id >> 32) +
-                        "/" + std::to_string(message.answer->id & 0xffffffffU) + " since cycle " +
+        lines.push_back(at + "input " + sides[side] + ": answer to ray " +
+                        std::to_string(message.answer->id >> 32) + "/" +
+                        std::to_string(message.answer->id & 0xffffffffU) + " since cycle " +
                         std::to_string(in->arrival(env_.classes.answer)) + " waits for the output " +
                         sides[int(route(*message.answer))]);
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];
         if (slot.state == Slot::State::empty || !slot.packet) continue;
-        lines.push_back(at + "slot " + std::to_string(i) + ": " + ray_text(slot.packet->ray) + " since cycle " +
-                        std::to_string(slot.since) + (slot.child ? ", its child can't leave" : ", waits for answers"));
+        lines.push_back(at + "slot " + std::to_string(i) + ": " + ray_text(slot.packet->ray) +
+                        " since cycle " + std::to_string(slot.since) +
+                        (slot.child ? ", its child can't leave" : ", waits for answers"));
     }
     return lines;
 }

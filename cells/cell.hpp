@@ -1,4 +1,5 @@
-// A cell's behaviour: no process of its own, a host calls step() in every cycle in which something may have changed.
+// A cell's behaviour: no process of its own, a host calls step() in every cycle in which something may have
+// changed.
 #pragma once
 
 #include <array>
@@ -12,9 +13,10 @@
 
 namespace raycell {
 
-/// One cell (paper, section 4): four input and four output links, a traversal unit, a shading unit, a ray store.
-/// Each unit does one thing at a time; costs come from the cost table. A ray stays in its input buffer while it is
-/// tested and until what it needs next is free: the output buffer, a slot, or the way for its answer.
+/// One cell (paper, section 4): four input and four output links, a traversal unit, a shading unit, a ray
+/// store. Each unit does one thing at a time; costs come from the cost table. A ray stays in its input buffer
+/// while it is tested and until what it needs next is free: the output buffer, a slot, or the way for its
+/// answer.
 class Cell {
   public:
     Cell(Environment& environment, int x, int y);
@@ -69,8 +71,8 @@ class Cell {
     void move_answer(LinkIn& in, Cycle now);
     void move_replies(Cycle now);
     void move_rays(Cycle now);
-    // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray, then the
-    // slots' child registers (last, because the store may grow while places are gone through).
+    // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
+    // then the slots' child registers (last, because the store may grow while places are gone through).
     std::size_t place_count() const { return ray_inputs_.size() + ray_store_.touched() + 1; }
     RayPacket* packet_at(std::size_t place) const;
     bool nothing_at(std::size_t place) const {
@@ -121,12 +123,12 @@ class Cell {
     Cycle store_port_ = never;   ///< cycle in which the ray store's one write port was used
     Cycle load_done_ = 0;
     LoadItem* load_item_ = nullptr;
-    RayPacket* own_ = nullptr;   ///< primary or precast ray on its way out
+    RayPacket* own_ = nullptr;  ///< primary or precast ray on its way out
     Cycle own_at_ = 0;
     std::uint8_t own_attempts_ = 0;
-    bool root_waits_ = false;    ///< the pixel's intensity is still to come
+    bool root_waits_ = false;  ///< the pixel's intensity is still to come
     bool root_to_send_ = false;
-    std::uint64_t precast_next_ = 0;  ///< voxel · sources + source
+    std::uint64_t precast_next_ = 0;    ///< voxel · sources + source
     std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
     std::uint64_t hash_ = 0;
     Cycle next_ = never;

@@ -1,4 +1,5 @@
-// Loading (paper, section 3.1): a cell latches what is broadcast and makes its voxels from the spans that cross it.
+// Loading (paper, section 3.1): a cell latches what is broadcast and makes its voxels from the spans that
+// cross it.
 #include "cells/cell.hpp"
 
 namespace raycell {
@@ -49,7 +50,8 @@ void Cell::take_load(LoadItem& item) {
         case LoadItem::Kind::setup:
         case LoadItem::Kind::features:
         case LoadItem::Kind::polygon:
-        case LoadItem::Kind::trapeze: break;
+        case LoadItem::Kind::trapeze:
+            break;
     }
 }
 

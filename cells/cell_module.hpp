@@ -1,10 +1,9 @@
-// A host: one sc_module with its own SC_METHOD and FIFO ports for one cell, for waveforms, probes and exchange with a
-// user's own module.
+// A host: one sc_module with its own SC_METHOD and FIFO ports for one cell, for waveforms, probes and
+// exchange with a user's own module.
 #pragma once
 
-#include <systemc>
-
 #include <array>
+#include <systemc>
 
 #include "cells/cell.hpp"
 

@@ -9,7 +9,8 @@ namespace {
 constexpr std::uint8_t most_attempts = 250;
 
 std::uint64_t jitter(std::uint64_t seed, std::uint64_t id, std::uint64_t attempt) {
-    std::uint64_t h = seed * 0x9e3779b97f4a7c15ULL ^ id * 0xbf58476d1ce4e5b9ULL ^ attempt * 0x94d049bb133111ebULL;
+    std::uint64_t h =
+        seed * 0x9e3779b97f4a7c15ULL ^ id * 0xbf58476d1ce4e5b9ULL ^ attempt * 0x94d049bb133111ebULL;
     h ^= h >> 31;
     h *= 0x7fb5d329728ea185ULL;
     return h ^ h >> 27;
@@ -29,7 +30,8 @@ RayPacket* Cell::launch(const Ray& ray) {
     return packet;
 }
 
-// ---- answers -------------------------------------------------------------------------------------------------
+// ---- answers
+// -------------------------------------------------------------------------------------------------
 
 void Cell::deliver(const Answer& answer, Cycle now) {
     store_port_ = now;
@@ -53,14 +55,18 @@ void Cell::deliver(const Answer& answer, Cycle now) {
             ++env_.counters.pixels_done;
             return;
         }
-        case RayKind::precast: store_.lit[answer.slot] &= ~bit; return;
+        case RayKind::precast:
+            store_.lit[answer.slot] &= ~bit;
+            return;
         case RayKind::memo:
             if (answer.kind == Answer::Kind::blocked) store_.lit[answer.slot] &= ~bit;
             store_.known[answer.slot] |= bit;
             return;
         case RayKind::reflected:
         case RayKind::refracted:
-        case RayKind::shadow: deliver_to_slot(answer, now); return;
+        case RayKind::shadow:
+            deliver_to_slot(answer, now);
+            return;
     }
 }
 
@@ -83,7 +89,8 @@ void Cell::deliver_to_slot(const Answer& answer, Cycle now) {
     slot.colour[child] = answer.colour;
 }
 
-// ---- own rays and children -----------------------------------------------------------------------------------
+// ---- own rays and children
+// -----------------------------------------------------------------------------------
 
 void Cell::feed_own(Cycle now) {
     if (own_ || env_.draining) return;
@@ -127,7 +134,8 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
         const std::uint64_t bit = std::uint64_t(1) << source;
         slot.to_ask &= ~bit;
         if (env_.context.settings.shadows == Shadows::memo) {
-            if (asked_[hit.voxel] & bit) return next_child(slot, index, now);  // another hit has asked already
+            if (asked_[hit.voxel] & bit)
+                return next_child(slot, index, now);  // another hit has asked already
             asked_[hit.voxel] |= bit;
             ++env_.counters.rays.shadow;
             Ray ray = voxel_shadow_ray(env_.context, store_, hit.voxel, source, RayKind::memo, x_, y_);
@@ -146,7 +154,8 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
             continue;
         }
         slot.send_child[child] = false;
-        if (slot.attempts[child] == 0) ++(child == 0 ? env_.counters.rays.reflected : env_.counters.rays.refracted);
+        if (slot.attempts[child] == 0)
+            ++(child == 0 ? env_.counters.rays.reflected : env_.counters.rays.refracted);
         Ray ray = child == 0 ? reflected_ray(env_.context, store_, parent, hit, slot.setup, x_, y_)
                              : refracted_ray(env_.context, store_, parent, hit, slot.setup, x_, y_);
         ray.slot = index;
@@ -155,7 +164,8 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
     return nullptr;
 }
 
-// ---- shading unit --------------------------------------------------------------------------------------------
+// ---- shading unit
+// --------------------------------------------------------------------------------------------
 
 bool Cell::complete(const Slot& slot) const {
     if (slot.state != Slot::State::waiting || slot.child || slot.to_ask || slot.awaited) return false;
@@ -206,10 +216,9 @@ void Cell::begin_direct(RayPacket& packet, Cycle now) {
     if (packet.ray.kind == RayKind::primary) {
         record_first_hit(env_.picture.pixels[std::size_t(packet.ray.id >> 32)], setup, voxel.polygon);
     }
-    const std::uint64_t lit =
-        env_.context.settings.shadows == Shadows::per_hit ? 0 : store_.lit[hit.voxel];
-    const std::uint32_t cycles = setup_cycles(env_.context, setup, env_.costs()) +
-                                 shade_cycles(lit & setup.facing, env_.costs());
+    const std::uint64_t lit = env_.context.settings.shadows == Shadows::per_hit ? 0 : store_.lit[hit.voxel];
+    const std::uint32_t cycles =
+        setup_cycles(env_.context, setup, env_.costs()) + shade_cycles(lit & setup.facing, env_.costs());
     shading_ = {Shading::Job::direct, 0, now + cycles, &packet,
                 shade_hit(env_.context, setup, voxel.object, lit, dvec3(0), dvec3(0))};
     env_.counters.shading_cycles += cycles;

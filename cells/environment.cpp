@@ -4,13 +4,18 @@ namespace raycell {
 
 int Environment::load_bits(const LoadItem& item) const {
     switch (item.kind) {
-        case LoadItem::Kind::setup: return bits.setup(context.scene.sources.size());
-        case LoadItem::Kind::features: return bits.features;
+        case LoadItem::Kind::setup:
+            return bits.setup(context.scene.sources.size());
+        case LoadItem::Kind::features:
+            return bits.features;
         case LoadItem::Kind::polygon:
             return int(item.polygon.vertices.size()) * 3 * machine.word_bits + bits.features;
-        case LoadItem::Kind::trapeze: return bits.trapeze;
-        case LoadItem::Kind::span: return bits.span;
-        case LoadItem::Kind::end_of_scene: break;
+        case LoadItem::Kind::trapeze:
+            return bits.trapeze;
+        case LoadItem::Kind::span:
+            return bits.span;
+        case LoadItem::Kind::end_of_scene:
+            break;
     }
     return bits.end_of_scene;
 }

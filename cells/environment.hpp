@@ -20,14 +20,15 @@ struct Counters {
     std::uint64_t rays_destroyed = 0;  ///< postponed
     std::uint64_t answers_sent = 0;
     std::uint64_t answers_delivered = 0;
-    std::uint64_t loads_sent = 0;      ///< spans and broadcast messages put into a row
-    std::uint64_t loads_delivered = 0; ///< dropped behind their last cell
-    std::uint64_t cells_loaded = 0;    ///< end-of-scene marks seen
+    std::uint64_t loads_sent = 0;       ///< spans and broadcast messages put into a row
+    std::uint64_t loads_delivered = 0;  ///< dropped behind their last cell
+    std::uint64_t cells_loaded = 0;     ///< end-of-scene marks seen
     std::uint64_t pixels_done = 0;
-    std::uint64_t slot_cycles = 0;     ///< sum over accepted rays of the cycles in the ray store
+    std::uint64_t slot_cycles = 0;  ///< sum over accepted rays of the cycles in the ray store
     std::uint64_t traversal_cycles = 0;
     std::uint64_t shading_cycles = 0;
-    Cycle last_progress = 0;  ///< last cycle in which an end-of-scene mark, or an answer other than "postponed", came home
+    Cycle last_progress =
+        0;  ///< last cycle in which an end-of-scene mark, or an answer other than "postponed", came home
 };
 
 /// A tested ray that wants to move on.

@@ -1,10 +1,9 @@
-// A unidirectional FIFO channel between two cells: one set of wires, one buffer per class at the far end (paper,
-// section 4.3: "buffers shared by neighbouring cells").
+// A unidirectional FIFO channel between two cells: one set of wires, one buffer per class at the far end
+// (paper, section 4.3: "buffers shared by neighbouring cells").
 #pragma once
 
-#include <systemc>
-
 #include <string>
+#include <systemc>
 #include <vector>
 
 #include "cells/message.hpp"
@@ -15,9 +14,9 @@ namespace raycell {
 /// What the sending side sees.
 class LinkOut : virtual public sc_core::sc_interface {
   public:
-    /// Whether a message of this class can start now: wires idle and room in its buffer, as they stood when the
-    /// cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is woken
-    /// in the cycle after room was made.
+    /// Whether a message of this class can start now: wires idle and room in its buffer, as they stood when
+    /// the cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is
+    /// woken in the cycle after room was made.
     virtual bool can_send(int index, Cycle& retry) = 0;
     /// Starts a message; it is visible at the far end after its link cycles.
     virtual void send(int index, const Message& message, int cycles) = 0;
@@ -33,12 +32,14 @@ class LinkIn : virtual public sc_core::sc_interface {
     virtual void pop(int index) = 0;
     /// Messages in a buffer, those still on the wires included.
     virtual int occupancy(int index) const = 0;
-    /// Asks the channel to keep `bits` set in `pending` while the buffer of a class holds anything, on the wires or
-    /// arrived: so a cell need not look into empty buffers. A channel that can't leaves them set for ever.
+    /// Asks the channel to keep `bits` set in `pending` while the buffer of a class holds anything, on the
+    /// wires or arrived: so a cell need not look into empty buffers. A channel that can't leaves them set for
+    /// ever.
     virtual void watch(int /*index*/, std::uint32_t* pending, std::uint32_t bits) { *pending |= bits; }
 };
 
-/// The channel. Writes and reads of a cycle show in the next one, so the order in which cells run does not matter.
+/// The channel. Writes and reads of a cycle show in the next one, so the order in which cells run does not
+/// matter.
 class Link : public LinkOut, public LinkIn {
   public:
     struct ClassStatistics {
@@ -52,7 +53,8 @@ class Link : public LinkOut, public LinkIn {
 
     void connect_source(Client& source) { source_ = &source; }
     void connect_sink(Client& sink) { sink_ = &sink; }
-    /// For sinks with many links: called with `port` and the cycle in which a message of a class will be visible.
+    /// For sinks with many links: called with `port` and the cycle in which a message of a class will be
+    /// visible.
     struct Arrivals {
         virtual ~Arrivals() = default;
         virtual void arrives(std::uint32_t port, int index, Cycle visible) = 0;

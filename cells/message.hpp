@@ -17,8 +17,8 @@ struct RayPacket {
     std::uint64_t decided = 0;  ///< cycle in which the test was over
 };
 
-/// A load message: polygons from geometry, trapezes from precomputation and down the column of distributors, spans
-/// in the rows; the others are broadcast.
+/// A load message: polygons from geometry, trapezes from precomputation and down the column of distributors,
+/// spans in the rows; the others are broadcast.
 struct LoadItem {
     enum class Kind : std::uint8_t { setup, features, polygon, trapeze, span, end_of_scene };
     Kind kind = Kind::end_of_scene;

@@ -28,8 +28,9 @@ struct Slot {
     Cycle since = 0;  ///< when the ray was accepted
 };
 
-/// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest is free
-/// for all; when M is smaller than their number, the deepest generations share the last (design, section 5).
+/// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest
+/// is free for all; when M is smaller than their number, the deepest generations share the last (design,
+/// section 5).
 class RayStore {
   public:
     RayStore(int capacity, int generations, Slots policy);
@@ -50,7 +51,7 @@ class RayStore {
     std::size_t group(int generation) const;
 
     int capacity_;
-    int shared_;  ///< slots free for all
+    int shared_;                          ///< slots free for all
     std::vector<std::uint16_t> used_by_;  ///< per reserved group; empty with policy `free`
     std::vector<Slot> slots_;             ///< grows to `capacity`
     std::vector<std::uint32_t> free_;

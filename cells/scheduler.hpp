@@ -1,10 +1,9 @@
 // Cycles without a free-running clock: a time wheel that wakes what has something to do, and nothing else.
 #pragma once
 
-#include <systemc>
-
 #include <cstdint>
 #include <map>
+#include <systemc>
 #include <vector>
 
 namespace raycell {

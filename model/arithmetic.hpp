@@ -1,6 +1,6 @@
 // The door to the cell's arithmetic: every operator beyond add, subtract and multiply that a cell performs.
-// The walk, the hit tests and the shading call these and nothing from <cmath>, so another arithmetic (words of
-// fixed length, table look-ups) replaces them here and nowhere else.
+// The walk, the hit tests and the shading call these and nothing from <cmath>, so another arithmetic (words
+// of fixed length, table look-ups) replaces them here and nowhere else.
 #pragma once
 
 #include <cmath>

@@ -44,7 +44,8 @@ bool inside_mask(const Voxel& voxel, const dvec3& point, double level) {
     const dvec2 high{voxel.window[1], voxel.window[3]};
     const dvec2 place = (uv - low) / (high - low);
     constexpr double rounding = 1e-6;  // of the window: the neighbour's mask must not leave a crack
-    if (glm::any(glm::lessThan(place, dvec2(-rounding))) || glm::any(glm::greaterThan(place, dvec2(1 + rounding)))) {
+    if (glm::any(glm::lessThan(place, dvec2(-rounding))) ||
+        glm::any(glm::greaterThan(place, dvec2(1 + rounding)))) {
         return false;
     }
     const int column = std::clamp(int(place.x * 8), 0, 7);
@@ -75,8 +76,8 @@ std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, cons
     const double t = (voxel.plane.c - arith::dot(voxel.plane.n, ray.position)) * arith::reciprocal(along);
     const double t_least = ray.fresh ? least_fresh_distance : -hair;
     if (!(t >= t_least && t <= t_end + hair)) return std::nullopt;
-    // Without edges a polygon's plane runs on over its neighbours. A ray that leaves one side of a surface first
-    // meets that same side of its next part: in its first cell, the other side is such an overrun.
+    // Without edges a polygon's plane runs on over its neighbours. A ray that leaves one side of a surface
+    // first meets that same side of its next part: in its first cell, the other side is such an overrun.
     const bool overruns = test == HitTest::plane || test == HitTest::mask;
     if (overruns && ray.fresh && ray.leaves != no_polygon && ray.leaves_front == (along > 0)) {
         return std::nullopt;
@@ -84,12 +85,13 @@ std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, cons
     const dvec3 point = ray.position + t * ray.direction;
     if (point.z < near - hair || point.z > far + hair) return std::nullopt;
     if (test == HitTest::mask && !inside_mask(voxel, point, level)) return std::nullopt;
-    if (test == HitTest::edge && !inside_pieces(store, voxel, project(point, voxel.drop))) return std::nullopt;
+    if (test == HitTest::edge && !inside_pieces(store, voxel, project(point, voxel.drop)))
+        return std::nullopt;
     return std::max(t, 0.0);
 }
 
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
-                                   double level, Comparisons* comparisons) {
+                                       double level, Comparisons* comparisons) {
     std::optional<CellHit> best;
     const double z1 = ray.position.z + t_end * ray.direction.z;
     const double z_low = std::min(ray.position.z, z1) - hair;
@@ -105,8 +107,7 @@ std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, d
         }
         const auto t = hit_voxel(store, voxel, ray, t_end, test, level);
         if (!t) continue;
-        if (!best || *t < best->t ||
-            (*t == best->t && voxel.polygon < store.voxels[best->voxel].polygon)) {
+        if (!best || *t < best->t || (*t == best->t && voxel.polygon < store.voxels[best->voxel].polygon)) {
             best = CellHit{*t, i};
         }
     }

@@ -25,9 +25,9 @@ struct Comparisons {
     std::uint32_t edges = 0;  ///< edge functions of these (rung `edge`)
 };
 
-/// The nearest hit in a cell; equal distances go to the lower polygon id. For shadow rays any hit will do, but
-/// the nearest is found all the same: the cell has one comparison unit for both.
+/// The nearest hit in a cell; equal distances go to the lower polygon id. For shadow rays any hit will do,
+/// but the nearest is found all the same: the cell has one comparison unit for both.
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
-                                   double level, Comparisons* comparisons = nullptr);
+                                       double level, Comparisons* comparisons = nullptr);
 
 }  // namespace raycell

@@ -24,7 +24,8 @@ std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings&
                 if (auto span = cut_span(trapeze, row, frame.width, gouraud ? &shades : nullptr)) {
                     ++total.spans;
                     for (;; advance(*span)) {
-                        const std::size_t cell = std::size_t(row) * std::size_t(frame.width) + std::size_t(span->x);
+                        const std::size_t cell =
+                            std::size_t(row) * std::size_t(frame.width) + std::size_t(span->x);
                         store_voxel(cells[cell], *span, settings, frame.level());
                         if (span->x == span->last) break;
                     }

@@ -57,10 +57,22 @@ BufferClasses buffer_classes(Networks networks) {
     BufferClasses classes;
     classes.networks = networks;
     switch (networks) {
-        case Networks::shared: classes.count = 1; classes.answer = 0; break;
-        case Networks::split: classes.count = 2; classes.answer = 1; break;
-        case Networks::half: classes.count = 3; classes.answer = 2; break;
-        case Networks::quadrant: classes.count = 5; classes.answer = 4; break;
+        case Networks::shared:
+            classes.count = 1;
+            classes.answer = 0;
+            break;
+        case Networks::split:
+            classes.count = 2;
+            classes.answer = 1;
+            break;
+        case Networks::half:
+            classes.count = 3;
+            classes.answer = 2;
+            break;
+        case Networks::quadrant:
+            classes.count = 5;
+            classes.answer = 4;
+            break;
     }
     return classes;
 }

@@ -8,7 +8,8 @@
 
 namespace raycell {
 
-/// The way back: an intensity, a verdict on a source, or the notice that a ray was destroyed and must be sent again.
+/// The way back: an intensity, a verdict on a source, or the notice that a ray was destroyed and must be sent
+/// again.
 struct Answer {
     enum class Kind : std::uint8_t { intensity, lit, blocked, postponed };
     dvec3 colour{0, 0, 0};
@@ -27,7 +28,7 @@ struct MessageBits {
     int ray = 0;
     int shadow_ray = 0;  ///< a ray with its distance to the source
     int intensity = 0;
-    int verdict = 0;     ///< also the postponed notice
+    int verdict = 0;  ///< also the postponed notice
     int span = 0;
     int trapeze = 0;
     int features = 0;
@@ -43,10 +44,11 @@ constexpr int link_cycles(int bits, int link_bits) { return (bits + link_bits - 
 
 /// Buffer classes of a link: which messages share a buffer (design, section 5).
 struct BufferClasses {
-    int count = 2;         ///< buffers that an index below may name
-    int answer = 1;        ///< class of answers
+    int count = 2;   ///< buffers that an index below may name
+    int answer = 1;  ///< class of answers
     int ray(const Ray& r) const;
-    bool used(int index, bool horizontal, Side side) const;  ///< whether a link in this direction has the buffer
+    bool used(int index, bool horizontal,
+              Side side) const;  ///< whether a link in this direction has the buffer
     Networks networks = Networks::split;
 };
 BufferClasses buffer_classes(Networks networks);

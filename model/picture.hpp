@@ -9,12 +9,12 @@
 namespace raycell {
 
 struct Pixel {
-    dvec3 colour{0, 0, 0};    ///< linear, unbounded above
-    double depth = 0;         ///< z of the first hit, cell widths; infinity where the background is seen
-    dvec3 normal{0, 0, 0};    ///< of the first hit, turned to the ray, cell coordinates; 0 for background
+    dvec3 colour{0, 0, 0};  ///< linear, unbounded above
+    double depth = 0;       ///< z of the first hit, cell widths; infinity where the background is seen
+    dvec3 normal{0, 0, 0};  ///< of the first hit, turned to the ray, cell coordinates; 0 for background
     std::uint32_t polygon = no_polygon;  ///< of the first hit
-    std::uint32_t cycle = 0;  ///< trace cycle in which the pixel was complete (timed only)
-    std::uint32_t hops = 0;   ///< cell-to-cell hops of all rays and returns of the pixel's tree
+    std::uint32_t cycle = 0;             ///< trace cycle in which the pixel was complete (timed only)
+    std::uint32_t hops = 0;              ///< cell-to-cell hops of all rays and returns of the pixel's tree
 };
 
 /// Row-major, row 0 on top.

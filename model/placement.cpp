@@ -85,8 +85,8 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
     const double hither = std::max(view.hither, 1e-6 * to_target);
     const double half_x = settings.width * tan_cell / 2;
     const double half_y = settings.height * tan_cell / 2;
-    Extent extent = visible_extent(scene, axes, settings, half_x, half_y, half_x * to_target,
-                                   half_y * to_target, hither);
+    Extent extent =
+        visible_extent(scene, axes, settings, half_x, half_y, half_x * to_target, half_y * to_target, hither);
     if (!(extent.near <= extent.far)) extent = {to_target, to_target};  // nothing to see: background
     if (!frame.viewer_at_infinity) extent.near = std::max(extent.near, hither);
     extent.far = std::max(extent.far, extent.near);
@@ -102,7 +102,8 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
     frame.cell_width = tan_cell * distance;
     frame.depth = std::max((far - near) / frame.cell_width, 1.0);
     frame.corner = view.from + near * frame.forward -
-                   0.5 * frame.cell_width * (double(settings.width) * frame.right + double(settings.height) * frame.down);
+                   0.5 * frame.cell_width *
+                       (double(settings.width) * frame.right + double(settings.height) * frame.down);
     frame.eye = {0.5 * settings.width, 0.5 * settings.height, -near / frame.cell_width};
     return frame;
 }
@@ -110,7 +111,8 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
 CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings) {
     if (scene.sources.size() > max_sources) {
         throw std::invalid_argument("the scene has " + std::to_string(scene.sources.size()) +
-                                    " light sources; at most " + std::to_string(max_sources) + " are allowed");
+                                    " light sources; at most " + std::to_string(max_sources) +
+                                    " are allowed");
     }
     CellScene placed;
     placed.frame = frame;

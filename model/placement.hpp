@@ -14,8 +14,8 @@ namespace raycell {
 /// Similarity from world to cell coordinates (x right, y down, z into the screen, all in cell widths) and the
 /// cube [0, width] x [0, height] x [0, depth]. The screen is z = 0 (design, section 3).
 struct Frame {
-    int width = 1;   ///< cells
-    int height = 1;  ///< cells
+    int width = 1;     ///< cells
+    int height = 1;    ///< cells
     double depth = 1;  ///< of the cube, in cell widths
     int depth_levels = 1;
     dvec3 right{1, 0, 0};    ///< unit, world
@@ -27,7 +27,7 @@ struct Frame {
     dvec3 eye{0, 0, -1};  ///< cell coordinates; unused with the viewer at infinity
 
     dvec3 to_cells(const dvec3& world) const;
-    dvec3 direction_to_cells(const dvec3& world) const;  ///< rotation only: unit stays unit
+    dvec3 direction_to_cells(const dvec3& world) const;    ///< rotation only: unit stays unit
     double level() const { return depth / depth_levels; }  ///< height of a depth level, cell widths
     Box cube() const { return {{0, 0, 0}, {double(width), double(height), depth}}; }
 
@@ -56,7 +56,7 @@ struct CellScene {
     std::vector<Source> sources;
     std::vector<Polygon> polygons;
     std::vector<std::string> warnings;  ///< what was treated otherwise than written, for standard error
-    std::array<bool, 6> beyond{};  ///< per Face: whether any polygon reaches beyond its plane
+    std::array<bool, 6> beyond{};       ///< per Face: whether any polygon reaches beyond its plane
 };
 
 /// Sets up the frame for a scene: the screen where the visible scene begins, the back where it ends.

@@ -146,8 +146,8 @@ std::vector<std::array<std::size_t, 3>> triangulate(const std::vector<dvec3>& ou
         std::size_t ear = 0;
         while (ear < rest.size() && !is_ear(ear)) ++ear;
         if (ear == rest.size()) ear = 0;  // an outline that crosses itself: any corner, so that it ends
-        triangles.push_back({rest[(ear + rest.size() - 1) % rest.size()], rest[ear],
-                             rest[(ear + 1) % rest.size()]});
+        triangles.push_back(
+            {rest[(ear + rest.size() - 1) % rest.size()], rest[ear], rest[(ear + 1) % rest.size()]});
         rest.erase(rest.begin() + std::ptrdiff_t(ear));
     }
     if (rest.size() == 3) triangles.push_back({rest[0], rest[1], rest[2]});

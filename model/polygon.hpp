@@ -48,8 +48,9 @@ struct Polygon {
     std::uint32_t object = 0;  ///< index of its features (Material)
     Plane plane;
     int drop = 2;  ///< dominant axis of plane.n
-    /// Farthest that a vertex lies off the plane, along the dropped axis, cells: files round their coordinates. Cells
-    /// are touched, and edges drawn, with this much room, so that a plane and its outline can't disagree.
+    /// Farthest that a vertex lies off the plane, along the dropped axis, cells: files round their
+    /// coordinates. Cells are touched, and edges drawn, with this much room, so that a plane and its outline
+    /// can't disagree.
     double slack = 0;
     NormalField normal;
     std::vector<dvec3> vertices;  ///< cell coordinates, in order round the polygon, possibly concave

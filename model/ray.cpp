@@ -9,9 +9,7 @@ namespace raycell {
 void set_direction(Ray& ray, const dvec3& direction) {
     ray.direction = direction;
     // A reciprocal too large to be a number belongs to a ray that never crosses.
-    const auto inverse = [](double d) {
-        return std::abs(d) < 1e-12 ? 0.0 : arith::reciprocal(d);
-    };
+    const auto inverse = [](double d) { return std::abs(d) < 1e-12 ? 0.0 : arith::reciprocal(d); };
     ray.inverse_x = inverse(direction.x);
     ray.inverse_y = inverse(direction.y);
     if (ray.inverse_x == 0) ray.direction.x = 0;
@@ -41,10 +39,18 @@ void cross(Ray& ray, const Crossing& crossing) {
     ray.position.x = std::clamp(ray.position.x, 0.0, 1.0);
     ray.position.y = std::clamp(ray.position.y, 0.0, 1.0);
     switch (crossing.side) {
-        case Side::east: ray.position.x = 0; break;
-        case Side::west: ray.position.x = 1; break;
-        case Side::south: ray.position.y = 0; break;
-        case Side::north: ray.position.y = 1; break;
+        case Side::east:
+            ray.position.x = 0;
+            break;
+        case Side::west:
+            ray.position.x = 1;
+            break;
+        case Side::south:
+            ray.position.y = 0;
+            break;
+        case Side::north:
+            ray.position.y = 1;
+            break;
     }
     ray.reach -= crossing.t;
     ray.fresh = false;

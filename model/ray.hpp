@@ -1,4 +1,5 @@
-// A ray on its way from cell to cell, and the incremental walk (Amanatides & Woo 1987), re-based at every hop.
+// A ray on its way from cell to cell, and the incremental walk (Amanatides & Woo 1987), re-based at every
+// hop.
 #pragma once
 
 #include <cstdint>
@@ -29,11 +30,11 @@ struct Ray {
     dvec3 direction{0, 0, 1};
     double inverse_x = 0;  ///< 1/direction.x, carried so that a hop needs no division; 0 if direction.x = 0
     double inverse_y = 0;
-    double weight = 1;   ///< share of the pixel that its intensity can still have
+    double weight = 1;  ///< share of the pixel that its intensity can still have
     double reach = std::numeric_limits<double>::infinity();  ///< distance left to the source (shadow rays)
     std::uint64_t id = 0;
     std::uint32_t leaves = no_polygon;  ///< polygon that it starts from and can't hit
-    std::uint32_t slot = 0;  ///< where its answer belongs: the parent's slot, or the voxel (memo, precast)
+    std::uint32_t slot = 0;    ///< where its answer belongs: the parent's slot, or the voxel (memo, precast)
     std::uint16_t home_x = 0;  ///< cell that sent it
     std::uint16_t home_y = 0;
     RayKind kind = RayKind::primary;
@@ -57,7 +58,8 @@ Crossing next_crossing(const Ray& ray);
 /// Moves the ray over a crossing into the neighbouring cell's coordinates.
 void cross(Ray& ray, const Crossing& crossing);
 
-/// The side that a ray which left through the front or the back takes next: straight on, an axial one goes east.
+/// The side that a ray which left through the front or the back takes next: straight on, an axial one goes
+/// east.
 Crossing border_crossing(const Ray& ray);
 
 }  // namespace raycell

@@ -34,10 +34,10 @@ struct LightSource {
 struct View {
     dvec3 from{0, 0, 1};
     dvec3 at{0, 0, 0};
-    dvec3 up{0, 1, 0};    ///< not parallel to at - from; need not be unit or perpendicular
-    double angle = 45;    ///< degrees, centre of the first to centre of the last pixel row, 0 < angle < 180
-    double hither = 0;    ///< world units, >= 0; nothing nearer along the axis is seen directly
-    int width = 512;      ///< resolution asked for by the file; the array's size decides
+    dvec3 up{0, 1, 0};  ///< not parallel to at - from; need not be unit or perpendicular
+    double angle = 45;  ///< degrees, centre of the first to centre of the last pixel row, 0 < angle < 180
+    double hither = 0;  ///< world units, >= 0; nothing nearer along the axis is seen directly
+    int width = 512;    ///< resolution asked for by the file; the array's size decides
     int height = 512;
 };
 

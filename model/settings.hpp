@@ -23,8 +23,8 @@ enum class ViewerMode { scene, infinity };
 
 /// What the picture depends on: scene placement, voxels, ray tree. Both engines use all of it.
 struct PictureSettings {
-    int width = 128;   ///< cells, 1..4096
-    int height = 128;  ///< cells, 1..4096
+    int width = 128;          ///< cells, 1..4096
+    int height = 128;         ///< cells, 1..4096
     int depth_levels = 1024;  ///< 1..65536
     ViewerMode viewer = ViewerMode::scene;
     RunStage stage = RunStage::trace;
@@ -33,27 +33,27 @@ struct PictureSettings {
     Normals normals = Normals::linear;
     Shadows shadows = Shadows::per_hit;
     ExteriorMode exterior = ExteriorMode::host;
-    int max_depth = 4;               ///< generations after the primary ray, 0..62
-    double min_weight = 1.0 / 256;   ///< a secondary ray that weighs less is not sent; 0: no cut
-    double normal_offset = 1e-8;     ///< cells, along the polygon's normal, to the side the new ray goes
-    double chord_error = 0.1;        ///< cells, largest gap between a curved object and its polygons
-    int voxel_capacity = 0;          ///< voxels a cell can hold; 0: unlimited
+    int max_depth = 4;              ///< generations after the primary ray, 0..62
+    double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut
+    double normal_offset = 1e-8;    ///< cells, along the polygon's normal, to the side the new ray goes
+    double chord_error = 0.1;       ///< cells, largest gap between a curved object and its polygons
+    int voxel_capacity = 0;         ///< voxels a cell can hold; 0: unlimited
 };
 
 /// What only time depends on: invariant 2 says that none of it changes the picture.
 struct MachineSettings {
-    int ray_store = 8;      ///< M, slots per cell, >= 1
-    int buffer_depth = 1;   ///< messages per buffer, >= 1
+    int ray_store = 8;     ///< M, slots per cell, >= 1
+    int buffer_depth = 1;  ///< messages per buffer, >= 1
     Networks networks = Networks::half;
     Recovery recovery = Recovery::postpone;
     Slots slots = Slots::reserved;
-    int link_bits = 20;     ///< bits that cross a link per cycle, >= 1
-    int word_bits = 20;     ///< a word of a message, for link cycles and storage
+    int link_bits = 20;  ///< bits that cross a link per cycle, >= 1
+    int word_bits = 20;  ///< a word of a message, for link cycles and storage
     double clock_mhz = 20;
-    std::int64_t max_cycles = 0;       ///< 0: no limit
-    int exterior_processors = 64;      ///< >= 1
-    int exterior_latency = 200;        ///< cycles per ray handed to an exterior processor, >= 1
-    std::uint64_t seed = 1;            ///< of the back-off's jitter
+    std::int64_t max_cycles = 0;   ///< 0: no limit
+    int exterior_processors = 64;  ///< >= 1
+    int exterior_latency = 200;    ///< cycles per ray handed to an exterior processor, >= 1
+    std::uint64_t seed = 1;        ///< of the back-off's jitter
     CostTable costs;
 };
 

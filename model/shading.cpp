@@ -37,8 +37,8 @@ bool refract_direction(const ShadePoint& point, double ior, dvec3& out) {
     const double cosine = -arith::dot(point.direction, point.normal);
     const double squared = 1 - eta * eta * (1 - cosine * cosine);
     if (squared < 0) return false;
-    out = arith::normalise(eta * point.direction +
-                           (eta * cosine - arith::square_root(squared)) * point.normal);
+    out =
+        arith::normalise(eta * point.direction + (eta * cosine - arith::square_root(squared)) * point.normal);
     return true;
 }
 

@@ -1,4 +1,5 @@
-// Whitted's model with Phong's highlight, the same for the machine, the exterior and the truth (design, section 7).
+// Whitted's model with Phong's highlight, the same for the machine, the exterior and the truth (design,
+// section 7).
 #pragma once
 
 #include <cstdint>
@@ -39,7 +40,8 @@ bool refract_direction(const ShadePoint& point, double ior, dvec3& out);
 inline double mirror_share(const Material& m) { return m.mirror ? m.specular : 0.0; }
 inline double transmit_share(const Material& m) { return m.transmit; }
 
-/// The local part: ambient 0.1·Kd·C, and I·(Kd·C·(N·L) + Ks·(R·L)^Shine) for each source whose bit in `lit` is set.
+/// The local part: ambient 0.1·Kd·C, and I·(Kd·C·(N·L) + Ks·(R·L)^Shine) for each source whose bit in `lit`
+/// is set.
 dvec3 local_intensity(const ShadePoint& point, const Material& material, const Source* sources,
                       std::size_t source_count, std::uint64_t lit);
 

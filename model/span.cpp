@@ -61,15 +61,16 @@ void set_intensity(Span& span, const Trapeze& trapeze, const CornerIntensities& 
     // Over less than a cell there is nothing to interpolate, and a steep increment would overshoot.
     if (right - left >= 1) span.d_intensity = (at_right - at_left) / (right - left);
     const double centre = span.x + 0.5;
-    span.intensity = right - left >= 1 ? at_left + (centre - left) * span.d_intensity
-                                       : 0.5 * (at_left + at_right);
+    span.intensity =
+        right - left >= 1 ? at_left + (centre - left) * span.d_intensity : 0.5 * (at_left + at_right);
 }
 
 }  // namespace
 
 std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width,
                              const CornerIntensities* intensities) {
-    if (trapeze.bottom + trapeze.slack.y < row || trapeze.top - trapeze.slack.y > row + 1) return std::nullopt;
+    if (trapeze.bottom + trapeze.slack.y < row || trapeze.top - trapeze.slack.y > row + 1)
+        return std::nullopt;
     const std::vector<dvec3> part = row_part(trapeze, row);
     if (part.size() < 3) return std::nullopt;
     dvec3 low = part.front();
@@ -115,7 +116,8 @@ void advance(Span& span) {
     span.plane.c -= span.plane.n.x;
     if (span.drop != 0) {  // otherwise x is not among (u, v)
         span.normal.base += span.normal.du;
-        for (int i = 0; i < span.edge_count; ++i) span.edges[std::size_t(i)].c += span.edges[std::size_t(i)].a;
+        for (int i = 0; i < span.edge_count; ++i)
+            span.edges[std::size_t(i)].c += span.edges[std::size_t(i)].a;
     }
     span.near += span.d_near;
     span.far += span.d_far;

@@ -1,4 +1,5 @@
-// Distribution: the span that a row cuts from a trapeze and sends through its pipeline of cells (paper, section 3.1).
+// Distribution: the span that a row cuts from a trapeze and sends through its pipeline of cells (paper,
+// section 3.1).
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@ namespace raycell {
 struct Span {
     std::uint32_t polygon = 0;
     std::uint32_t object = 0;
-    int x = 0;      ///< the cell that it is relative to: X1 first
-    int last = 0;   ///< Xr, the last cell that it touches
+    int x = 0;     ///< the cell that it is relative to: X1 first
+    int last = 0;  ///< Xr, the last cell that it touches
     Plane plane;
     int drop = 2;
     NormalField normal;
@@ -27,10 +28,10 @@ struct Span {
     double d_far = 0;
     double z_min = 0;  ///< bounds of the row's part: for edge-on planes they are all there is
     double z_max = 0;
-    dvec3 slack{0, 0, 0};  ///< Trapeze::slack
+    dvec3 slack{0, 0, 0};          ///< Trapeze::slack
     std::array<dvec3, 8> outline;  ///< the row's part, relative to the cell
     int outline_count = 0;
-    dvec3 intensity{0, 0, 0};    ///< Gouraud: intensity at the cell's centre (only --display gouraud)
+    dvec3 intensity{0, 0, 0};  ///< Gouraud: intensity at the cell's centre (only --display gouraud)
     dvec3 d_intensity{0, 0, 0};
 };
 

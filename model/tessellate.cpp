@@ -56,9 +56,7 @@ class Builder {
             const dvec3 sign{octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1};
             const bool mirrored = sign.x * sign.y * sign.z < 0;
             // A vertex is a function of three whole numbers alone, so octants share theirs bit for bit.
-            const auto normal = [&](int i, int j) {
-                return glm::normalize(dvec3(i, j, n - i - j)) * sign;
-            };
+            const auto normal = [&](int i, int j) { return glm::normalize(dvec3(i, j, n - i - j)) * sign; };
             const auto facet = [&](dvec3 a, dvec3 b, dvec3 c) {
                 if (mirrored != shape.inward) std::swap(b, c);
                 const double side = shape.inward ? -1 : 1;

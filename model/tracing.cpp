@@ -81,7 +81,7 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context)
         visit.event = Visit::Event::reaches_source;
     }
     const auto hit = nearest_in_cell(store, ray, t_end, context.settings.hit, context.scene.frame.level(),
-                                 &visit.comparisons);
+                                     &visit.comparisons);
     // What lies on the source itself does not hide it.
     if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach - hair)) {
         visit.event = Visit::Event::hit;
@@ -211,7 +211,8 @@ Ray shadow_ray(const Context& context, const CellStore& store, const Ray& parent
 Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32_t voxel, std::size_t source,
                      RayKind kind, int x, int y) {
     Ray parent;
-    parent.id = (std::uint64_t(y) * std::uint64_t(context.scene.frame.width) + std::uint64_t(x)) << 32 | voxel;
+    parent.id =
+        (std::uint64_t(y) * std::uint64_t(context.scene.frame.width) + std::uint64_t(x)) << 32 | voxel;
     Ray ray = child_of(parent, kind, unsigned(source), x, y);
     ray.slot = voxel;
     const dvec3 local = store.voxels[voxel].point;

@@ -36,8 +36,10 @@ std::uint32_t visit_cycles(const Visit& visit, HitTest test, const CostTable& co
 enum class Beyond { nothing, exterior };
 Beyond beyond_face(const Context& context, Face face);
 inline Face face_of(Side side) {
-    return side == Side::east ? face_right : side == Side::west ? face_left
-         : side == Side::south ? face_bottom : face_top;
+    return side == Side::east    ? face_right
+           : side == Side::west  ? face_left
+           : side == Side::south ? face_bottom
+                                 : face_top;
 }
 inline Face face_of_depth(const Ray& ray) { return ray.direction.z > 0 ? face_back : face_front; }
 
@@ -65,7 +67,7 @@ class ExteriorTracer {
 /// A hit as the shading unit sees it: the point, and the rays worth sending from it.
 struct HitSetup {
     ShadePoint point;
-    dvec3 local{0, 0, 0};  ///< hit point relative to the cell
+    dvec3 local{0, 0, 0};      ///< hit point relative to the cell
     std::uint64_t facing = 0;  ///< bit per source that the normal faces
     bool reflects = false;
     bool refracts = false;
@@ -84,7 +86,8 @@ int waiting_generations(const Context& context);
 /// Pixel (x, y)'s primary ray.
 Ray primary_ray(const Context& context, int x, int y);
 
-/// Children of a ray that hit: the reflected (child 0), the refracted (child 1), a shadow ray (child = source).
+/// Children of a ray that hit: the reflected (child 0), the refracted (child 1), a shadow ray (child =
+/// source).
 Ray reflected_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
                   const HitSetup& setup, int x, int y);
 Ray refracted_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,

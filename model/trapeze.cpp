@@ -121,14 +121,16 @@ class Cutter {
                 t.corners[std::size_t(t.corner_count++)] = p;
             }
         }
-        if (t.corner_count > 1 && t.corners[0] == t.corners[std::size_t(t.corner_count - 1)]) --t.corner_count;
+        if (t.corner_count > 1 && t.corners[0] == t.corners[std::size_t(t.corner_count - 1)])
+            --t.corner_count;
         if (t.corner_count < 3) return;
         const dvec2 inside = project(centre, t.drop);
         side_edge(t, open.left, inside);
         side_edge(t, open.right, inside);
         cut_edge(t, open.s0, 1);
         cut_edge(t, open.s1, -1);
-        // Hit points lie on the plane, the outline perhaps a little off it, and the neighbour's plane off the other way.
+        // Hit points lie on the plane, the outline perhaps a little off it, and the neighbour's plane off the
+        // other way.
         for (int i = 0; i < t.edge_count; ++i) t.edges[std::size_t(i)].c += 2 * polygon_.slack;
         t.top = t.bottom = ring[0].y;
         for (const dvec3& p : ring) {

@@ -9,8 +9,8 @@
 
 namespace raycell {
 
-/// Inside where a·u + b·v + c >= 0 in the projection of the polygon's plane; (a, b) is unit, so the value is a
-/// distance in cells. `piece` tells which convex piece of a voxel the edge belongs to.
+/// Inside where a·u + b·v + c >= 0 in the projection of the polygon's plane; (a, b) is unit, so the value is
+/// a distance in cells. `piece` tells which convex piece of a voxel the edge belongs to.
 struct EdgeFunction {
     double a = 0;
     double b = 0;
@@ -19,12 +19,12 @@ struct EdgeFunction {
     double at(const dvec2& uv) const { return a * uv.x + b * uv.y + c; }
 };
 
-/// Distances below this are rounding, not geometry (cells). Points this far outside an edge count as inside, so
-/// that neighbours that share an edge leave no crack.
+/// Distances below this are rounding, not geometry (cells). Points this far outside an edge count as inside,
+/// so that neighbours that share an edge leave no crack.
 constexpr double hair = 1e-7;
 
-/// A convex part of a polygon between two lines parallel to the rows. Polygons without height on the screen (seen
-/// edge-on along a row) are cut along z instead, those without height and depth along x.
+/// A convex part of a polygon between two lines parallel to the rows. Polygons without height on the screen
+/// (seen edge-on along a row) are cut along z instead, those without height and depth along x.
 struct Trapeze {
     std::uint32_t polygon = 0;
     std::uint32_t object = 0;
@@ -35,8 +35,8 @@ struct Trapeze {
     int corner_count = 0;
     std::array<EdgeFunction, 4> edges;
     int edge_count = 0;
-    double top = 0;     ///< smallest y, cells
-    double bottom = 0;  ///< largest y, cells
+    double top = 0;        ///< smallest y, cells
+    double bottom = 0;     ///< largest y, cells
     dvec3 slack{0, 0, 0};  ///< Polygon::slack, along the dropped axis
     /// First row of an array of `height` rows that it touches.
     int first_row(int height) const { return std::clamp(int(top - slack.y), 0, height - 1); }

@@ -7,12 +7,22 @@ namespace raycell {
 
 void count_ray(RayCounts& counts, RayKind kind) {
     switch (kind) {
-        case RayKind::primary: ++counts.primary; break;
-        case RayKind::reflected: ++counts.reflected; break;
-        case RayKind::refracted: ++counts.refracted; break;
+        case RayKind::primary:
+            ++counts.primary;
+            break;
+        case RayKind::reflected:
+            ++counts.reflected;
+            break;
+        case RayKind::refracted:
+            ++counts.refracted;
+            break;
         case RayKind::shadow:
-        case RayKind::memo: ++counts.shadow; break;
-        case RayKind::precast: ++counts.precast; break;
+        case RayKind::memo:
+            ++counts.shadow;
+            break;
+        case RayKind::precast:
+            ++counts.precast;
+            break;
     }
 }
 
@@ -92,7 +102,8 @@ UntimedMachine::Answer UntimedMachine::trace(Ray ray, int x, int y, Pixel* pixel
                 start_outside(ray, visit.t_leave);
                 continue;  // this cell only passes it on now
             }
-            case Visit::Event::forward: break;
+            case Visit::Event::forward:
+                break;
         }
         const Place next{at.x + step_x(visit.crossing.side), at.y + step_y(visit.crossing.side)};
         if (!in_array(next)) {

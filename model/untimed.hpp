@@ -15,7 +15,7 @@ struct RayCounts {
     std::uint64_t primary = 0;
     std::uint64_t reflected = 0;
     std::uint64_t refracted = 0;
-    std::uint64_t shadow = 0;    ///< per hit or memo
+    std::uint64_t shadow = 0;  ///< per hit or memo
     std::uint64_t precast = 0;
     std::uint64_t lost = 0;      ///< left the cube with nothing beyond, or with --exterior none
     std::uint64_t exterior = 0;  ///< handed to the exterior processors
@@ -27,8 +27,9 @@ void count_ray(RayCounts& counts, RayKind kind);
 
 class UntimedMachine {
   public:
-    /// `exterior` may be null when settings.exterior is none, or nothing is traced. Loads the array. The scene must
-    /// outlive the machine; the settings are copied. Throws std::invalid_argument without the exterior it needs.
+    /// `exterior` may be null when settings.exterior is none, or nothing is traced. Loads the array. The
+    /// scene must outlive the machine; the settings are copied. Throws std::invalid_argument without the
+    /// exterior it needs.
     UntimedMachine(const CellScene& scene, const PictureSettings& settings, const ExteriorTracer* exterior);
 
     /// Traces (or, with --stage load, displays) every pixel; `progress` is called after each row.
@@ -53,8 +54,8 @@ class UntimedMachine {
     Answer trace(Ray ray, int x, int y, Pixel* pixel);
     Answer leave(const Ray& ray, Face face, const Crossing& crossing, Place at, Pixel* pixel);
     Answer answer_hit(const Ray& ray, const CellHit& hit, Place at, Pixel* pixel);
-    bool source_visible(const Ray& ray, const CellHit& hit, const HitSetup& setup, std::size_t source, Place at,
-                        Pixel* pixel);
+    bool source_visible(const Ray& ray, const CellHit& hit, const HitSetup& setup, std::size_t source,
+                        Place at, Pixel* pixel);
     CellStore& cell(Place at) {
         return cells_[std::size_t(at.y) * std::size_t(context_.scene.frame.width) + std::size_t(at.x)];
     }

@@ -72,7 +72,8 @@ bool overlap(const Rectangle& a, const Rectangle& b) {
 }
 
 /// A sub-cell's bit is set where the polygon touches it at all: watertight first.
-std::uint64_t coverage(const EdgeFunction* edges, int count, const Rectangle& whole, const Rectangle& bounds) {
+std::uint64_t coverage(const EdgeFunction* edges, int count, const Rectangle& whole,
+                       const Rectangle& bounds) {
     std::uint64_t mask = 0;
     const dvec2 step = (whole.high - whole.low) / 8.0;
     for (int row = 0; row < 8; ++row) {
@@ -228,7 +229,7 @@ VoxelBits voxel_bits(const PictureSettings& settings, int word_bits, std::size_t
     // Two slopes, an offset and which axis they are for.
     if (settings.hit >= HitTest::plane) bits.base += 3 * word_bits + 2;
     if (settings.hit == HitTest::mask) bits.base += 64 + 4 * 5;  // coverage and its window
-    if (settings.hit == HitTest::edge) bits.base += 4;  // how many edges follow
+    if (settings.hit == HitTest::edge) bits.base += 4;           // how many edges follow
     if (settings.normals == Normals::linear) bits.base += 6 * word_bits;
     if (settings.shadows != Shadows::per_hit) {
         bits.base += int(sources) * (settings.shadows == Shadows::memo ? 2 : 1);

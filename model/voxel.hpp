@@ -9,8 +9,8 @@
 
 namespace raycell {
 
-/// The run of depth levels that a polygon takes up in one cell, and what the rung above `interval` adds to it.
-/// Lengths in cell widths, x and y relative to the cell's corner, z absolute.
+/// The run of depth levels that a polygon takes up in one cell, and what the rung above `interval` adds to
+/// it. Lengths in cell widths, x and y relative to the cell's corner, z absolute.
 struct Voxel {
     std::uint32_t polygon = 0;
     std::uint32_t object = 0;
@@ -19,31 +19,31 @@ struct Voxel {
     Plane plane;
     NormalField normal;
     std::uint8_t drop = 2;
-    std::uint8_t pieces = 0;       ///< convex pieces told apart by edges; 0: the polygon covers the whole cell
+    std::uint8_t pieces = 0;  ///< convex pieces told apart by edges; 0: the polygon covers the whole cell
     std::uint16_t edge_count = 0;
     std::uint32_t first_edge = 0;  ///< index into CellStore::edges
     std::uint64_t mask = 0;        ///< bit 8·row + column, over the window
-    /// The mask's window: u from, u to, v from, v to, in 32nds of the cell (of the run where an axis is z). It
-    /// frames the polygon's part, so that the 64 bits lie where there is something to tell apart.
+    /// The mask's window: u from, u to, v from, v to, in 32nds of the cell (of the run where an axis is z).
+    /// It frames the polygon's part, so that the 64 bits lie where there is something to tell apart.
     std::array<std::uint8_t, 4> window{0, 32, 0, 32};
-    dvec3 point{0, 0, 0};          ///< the voxel's own point: precast and memo shadows, `voxel` normals
-    double area = 0;               ///< of the polygon in the cell, while loading: weight of `point` in a merge
+    dvec3 point{0, 0, 0};  ///< the voxel's own point: precast and memo shadows, `voxel` normals
+    double area = 0;       ///< of the polygon in the cell, while loading: weight of `point` in a merge
 };
 
 /// What one cell holds after loading.
 struct CellStore {
     std::vector<Voxel> voxels;
-    std::vector<EdgeFunction> edges;       ///< only at rung `edge`
-    std::vector<dvec3> intensities;        ///< per voxel, only for --display gouraud
-    std::vector<std::uint64_t> lit;        ///< per voxel, a bit per source (precast, memo)
-    std::vector<std::uint64_t> known;      ///< per voxel, a bit per source already asked for (memo)
-    std::uint32_t overflowed = 0;          ///< voxels that did not fit
+    std::vector<EdgeFunction> edges;             ///< only at rung `edge`
+    std::vector<dvec3> intensities;              ///< per voxel, only for --display gouraud
+    std::vector<std::uint64_t> lit;              ///< per voxel, a bit per source (precast, memo)
+    std::vector<std::uint64_t> known;            ///< per voxel, a bit per source already asked for (memo)
+    std::uint32_t overflowed = 0;                ///< voxels that did not fit
     std::uint32_t last_overflowed = no_polygon;  ///< whose voxel was the last of them
 };
 
-/// Makes the voxel of the cell that the span is at and stores it, or adds it to the voxel that the same polygon has
-/// there already. Returns false if the polygon turns out not to touch the cell (or, at rung `depth`, not to cover its
-/// centre), or if the store is full; then `overflowed` counts it.
+/// Makes the voxel of the cell that the span is at and stores it, or adds it to the voxel that the same
+/// polygon has there already. Returns false if the polygon turns out not to touch the cell (or, at rung
+/// `depth`, not to cover its centre), or if the store is full; then `overflowed` counts it.
 bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level);
 
 constexpr int window_steps = 32;

@@ -1,5 +1,6 @@
-// Stage 3, distribution: one distributor per row, chained down the left edge. A trapeze travels down the chain like a
-// wavefront; each row cuts its span from it and injects it into its pipeline of cells (paper, section 2.3).
+// Stage 3, distribution: one distributor per row, chained down the left edge. A trapeze travels down the
+// chain like a wavefront; each row cuts its span from it and injects it into its pipeline of cells (paper,
+// section 2.3).
 #pragma once
 
 #include <memory>
@@ -23,10 +24,10 @@ class RowDistributor : public Stage {
     void take(LoadItem& item, Cycle now);
 
     int row_;
-    LoadItem* item_ = nullptr;     ///< at the head of the input, at work
-    LoadItem* to_row_ = nullptr;   ///< still to be injected
-    bool goes_down_ = false;       ///< still to be passed on
-    bool passed_on_ = false;       ///< the row below owns it now
+    LoadItem* item_ = nullptr;    ///< at the head of the input, at work
+    LoadItem* to_row_ = nullptr;  ///< still to be injected
+    bool goes_down_ = false;      ///< still to be passed on
+    bool passed_on_ = false;      ///< the row below owns it now
     Cycle ready_ = 0;
 };
 

@@ -13,7 +13,8 @@ void Exterior::join(Array& array) {
     Environment& env = environment();
     const auto join_cell = [&](int x, int y, Side side) {
         const auto make = [&](const char* way) {
-            links_.push_back(std::make_unique<Link>(env.scheduler, env.classes.count, env.machine.buffer_depth));
+            links_.push_back(
+                std::make_unique<Link>(env.scheduler, env.classes.count, env.machine.buffer_depth));
             links_.back()->set_name("border_" + std::to_string(x) + "_" + std::to_string(y) + way);
             return links_.back().get();
         };
@@ -37,15 +38,17 @@ void Exterior::join(Array& array) {
     }
 }
 
-void Exterior::arrives(std::uint32_t port, int index, Cycle visible) { waiting_.emplace(visible, port, index); }
+void Exterior::arrives(std::uint32_t port, int index, Cycle visible) {
+    waiting_.emplace(visible, port, index);
+}
 
 void Exterior::begin(Processor& processor, std::uint32_t port, int index, Cycle now) {
     Environment& env = environment();
     const BorderPort& border = ports_[port];
     RayPacket* packet = border.from_cell->front(index).ray;
     const Ray& ray = packet->ray;
-    const ExteriorRequest request = exterior_request(ray, packet->visit.crossing, border.x, border.y,
-                                                     env.context.scene.frame.depth);
+    const ExteriorRequest request =
+        exterior_request(ray, packet->visit.crossing, border.x, border.y, env.context.scene.frame.depth);
     processor = Processor();
     processor.busy = true;
     processor.port = port;
@@ -101,8 +104,8 @@ Cycle Exterior::step(Cycle now) {
             break;
         }
         waiting_.erase(waiting_.begin());
-        const auto idle = std::find_if(processors_.begin(), processors_.end(),
-                                       [](const Processor& p) { return !p.busy; });
+        const auto idle =
+            std::find_if(processors_.begin(), processors_.end(), [](const Processor& p) { return !p.busy; });
         begin(*idle, port, index, now);
         next = std::min(next, idle->done);
     }

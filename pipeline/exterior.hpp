@@ -1,4 +1,5 @@
-// The exterior processors: trace the rays that leave the cube classically, through the whole scene (paper, section 3.3).
+// The exterior processors: trace the rays that leave the cube classically, through the whole scene (paper,
+// section 3.3).
 #pragma once
 
 #include <memory>
@@ -11,8 +12,8 @@
 
 namespace raycell {
 
-/// Joined to every border link. Rays queue in the border links' own buffers until one of the processors is free; its
-/// answer goes back over the same border link after the processor's latency.
+/// Joined to every border link. Rays queue in the border links' own buffers until one of the processors is
+/// free; its answer goes back over the same border link after the processor's latency.
 class Exterior : public Stage, public Link::Arrivals {
   public:
     Exterior(sc_core::sc_module_name name, Environment& environment, const ExteriorTracer& tracer);

@@ -1,5 +1,5 @@
-// Stage 1, geometry: hands the tessellated polygons of the scene, cut to the cube, to precomputation. First the
-// sources and the viewer, then per object its features and its polygons, at last the end-of-scene mark.
+// Stage 1, geometry: hands the tessellated polygons of the scene, cut to the cube, to precomputation. First
+// the sources and the viewer, then per object its features and its polygons, at last the end-of-scene mark.
 #pragma once
 
 #include "pipeline/stage.hpp"

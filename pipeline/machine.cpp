@@ -19,11 +19,16 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 const char* name_of(Verdict verdict) {
     switch (verdict) {
-        case Verdict::completed: return "completed";
-        case Verdict::deadlock: return "deadlock";
-        case Verdict::livelock: return "livelock";
-        case Verdict::cycle_limit: return "cycle_limit";
-        case Verdict::capacity: return "capacity";
+        case Verdict::completed:
+            return "completed";
+        case Verdict::deadlock:
+            return "deadlock";
+        case Verdict::livelock:
+            return "livelock";
+        case Verdict::cycle_limit:
+            return "cycle_limit";
+        case Verdict::capacity:
+            return "capacity";
     }
     return "";
 }
@@ -46,7 +51,8 @@ Machine::Machine(sc_core::sc_module_name name, const CellScene& scene, const Pic
     const bool anything_beyond =
         std::any_of(scene.beyond.begin(), scene.beyond.end(), [](bool b) { return b; });
     if (settings.exterior == ExteriorMode::host && anything_beyond && settings.stage == RunStage::trace) {
-        if (!tracer) throw std::invalid_argument("exterior 'host' needs a tracer for what lies outside the cube");
+        if (!tracer)
+            throw std::invalid_argument("exterior 'host' needs a tracer for what lies outside the cube");
         exterior_ = std::make_unique<Exterior>("exterior", environment_, *tracer);
         exterior_->join(array_);
     }
@@ -66,8 +72,7 @@ void Machine::bind_pipeline() {
     distribution_.row(0).in.bind(to_distribution_);
 
     for (int y = 0; y < environment_.height(); ++y) {
-        row_links_.push_back(
-            std::make_unique<Link>(scheduler_, 1, environment_.machine.buffer_depth));
+        row_links_.push_back(std::make_unique<Link>(scheduler_, 1, environment_.machine.buffer_depth));
         Link& link = *row_links_.back();
         link.set_name("distribution.row_" + std::to_string(y) + ".east");
         link.connect_source(distribution_.row(y));
@@ -97,9 +102,10 @@ bool Machine::watch(void* self, Cycle now) {
     if (machine.progress_ && ++machine.watch_calls_ % calls_between_reports == 0) {
         constexpr const char* names[] = {"load", "precast", "trace"};
         const std::uint64_t cells = std::uint64_t(env.width()) * std::uint64_t(env.height());
-        machine.progress_({names[int(env.phase)], now,
-                           env.phase == Phase::load ? env.counters.cells_loaded : env.counters.pixels_done, cells,
-                           env.counters.load_hops + env.counters.rays.ray_hops + env.counters.rays.return_hops});
+        machine.progress_(
+            {names[int(env.phase)], now,
+             env.phase == Phase::load ? env.counters.cells_loaded : env.counters.pixels_done, cells,
+             env.counters.load_hops + env.counters.rays.ray_hops + env.counters.rays.return_hops});
     }
     return true;
 }
@@ -123,9 +129,15 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     const Cycle cycles = end - environment_.phase_start;
     const double seconds = seconds_since(wall);
     switch (phase) {
-        case Phase::load: result.load_cycles = cycles, result.wall_load = seconds; break;
-        case Phase::precast: result.precast_cycles = cycles, result.wall_precast = seconds; break;
-        case Phase::trace: result.trace_cycles = cycles, result.wall_trace = seconds; break;
+        case Phase::load:
+            result.load_cycles = cycles, result.wall_load = seconds;
+            break;
+        case Phase::precast:
+            result.precast_cycles = cycles, result.wall_precast = seconds;
+            break;
+        case Phase::trace:
+            result.trace_cycles = cycles, result.wall_trace = seconds;
+            break;
     }
 }
 
@@ -133,13 +145,15 @@ bool Machine::phase_complete(const RunResult&) const {
     const Counters& c = environment_.counters;
     const std::uint64_t cells = std::uint64_t(environment_.width()) * std::uint64_t(environment_.height());
     switch (environment_.phase) {
-        case Phase::load: return c.cells_loaded == cells;
+        case Phase::load:
+            return c.cells_loaded == cells;
         case Phase::precast:
             return c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed &&
                    c.answers_sent == c.answers_delivered &&
                    std::none_of(array_.cells().begin(), array_.cells().end(),
                                 [](const auto& cell) { return cell->cell().busy(); });
-        case Phase::trace: return c.pixels_done == cells;
+        case Phase::trace:
+            return c.pixels_done == cells;
     }
     return false;
 }
@@ -165,8 +179,8 @@ bool Machine::buffers_empty() const {
     return true;
 }
 
-/// Nothing moves by itself: if a step of any cell now changes something, its waking was lost, and the verdict would
-/// be the model's fault, not the machine's.
+/// Nothing moves by itself: if a step of any cell now changes something, its waking was lost, and the verdict
+/// would be the model's fault, not the machine's.
 bool Machine::kick_finds_work() {
     const std::uint64_t before = array_.schedule_hash();
     scheduler_.skip(1 << 20);  // past every transfer and back-off
@@ -221,15 +235,16 @@ void Machine::check_conservation(const RunResult&) const {
     const bool rays = c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed;
     const bool answers = c.answers_sent == c.answers_delivered;
     const bool loads = c.loads_sent == c.loads_delivered;
-    const bool nothing_left = environment_.pools.rays.in_use() == 0 && environment_.pools.answers.in_use() == 0 &&
+    const bool nothing_left = environment_.pools.rays.in_use() == 0 &&
+                              environment_.pools.answers.in_use() == 0 &&
                               environment_.pools.loads.in_use() == 0;
     if (rays && answers && loads && nothing_left) return;
     throw std::logic_error(
         "internal error: messages are not conserved: rays " + std::to_string(c.rays_sent) + " sent, " +
         std::to_string(c.rays_answered) + " answered, " + std::to_string(c.rays_silent) + " silent, " +
-        std::to_string(c.rays_destroyed) + " destroyed; answers " + std::to_string(c.answers_sent) + " sent, " +
-        std::to_string(c.answers_delivered) + " delivered; load messages " + std::to_string(c.loads_sent) +
-        " sent, " + std::to_string(c.loads_delivered) + " delivered");
+        std::to_string(c.rays_destroyed) + " destroyed; answers " + std::to_string(c.answers_sent) +
+        " sent, " + std::to_string(c.answers_delivered) + " delivered; load messages " +
+        std::to_string(c.loads_sent) + " sent, " + std::to_string(c.loads_delivered) + " delivered");
 }
 
 void Machine::collect(RunResult& result) const {

@@ -1,4 +1,5 @@
-// Stage 2, precomputation: polygons into trapezes, with what the display needs at their corners (paper, section 2.2).
+// Stage 2, precomputation: polygons into trapezes, with what the display needs at their corners (paper,
+// section 2.2).
 #pragma once
 
 #include <vector>

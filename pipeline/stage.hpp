@@ -1,4 +1,5 @@
-// What the stages before the array have in common: a process woken by the scheduler, a throughput, a utilisation.
+// What the stages before the array have in common: a process woken by the scheduler, a throughput, a
+// utilisation.
 #pragma once
 
 #include <systemc>

@@ -7,8 +7,9 @@ dvec3 ClassicalExterior::radiance(const ExteriorRequest& request, const Ray& ray
         if (const auto hit = truth_.intersect(request.origin, request.direction, ray.leaves)) {
             const Polygon& polygon = scene_.polygons[hit->index];
             HitSetup setup;
-            setup.point = shade_point(hit->position, request.direction,
-                                      polygon.normal.at(project(hit->position, polygon.drop)), polygon.plane.n);
+            setup.point =
+                shade_point(hit->position, request.direction,
+                            polygon.normal.at(project(hit->position, polygon.drop)), polygon.plane.n);
             record_first_hit(*pixel, setup, polygon.id);
         }
     }

@@ -1,4 +1,5 @@
-// The exterior processors' work: the truth renderer's code from where a ray left the cube (paper, section 3.3).
+// The exterior processors' work: the truth renderer's code from where a ray left the cube (paper,
+// section 3.3).
 #pragma once
 
 #include "model/tracing.hpp"
@@ -8,8 +9,8 @@ namespace raycell {
 
 class ClassicalExterior : public ExteriorTracer {
   public:
-    /// The renderer must have been made from this scene, with the settings of the machine's ray tree; both must
-    /// outlive this object.
+    /// The renderer must have been made from this scene, with the settings of the machine's ray tree; both
+    /// must outlive this object.
     ClassicalExterior(const CellScene& scene, const TruthRenderer& truth) : scene_(scene), truth_(truth) {}
     dvec3 radiance(const ExteriorRequest& request, const Ray& ray, Pixel* pixel) const override;
     bool blocked(const ExteriorRequest& request, const Ray& ray) const override;

@@ -59,15 +59,17 @@ int run(const CompareOptions& options) {
 
 Command add_compare_command(CLI::App& program) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* app = program.add_subcommand("compare", "Compares two pictures, .exr or .png; exit code 2 if they "
-                                                      "differ by more than was allowed");
+    CLI::App* app = program.add_subcommand("compare",
+                                           "Compares two pictures, .exr or .png; exit code 2 if they "
+                                           "differ by more than was allowed");
     app->add_option("picture", options->test, "the picture in question")->required()->type_name("FILE");
     app->add_option("truth", options->truth, "what it is compared with")->required()->type_name("FILE");
     app->add_option("-o,--output", options->difference, "write the difference as PNG")->type_name("FILE");
     OptionTable table(*app);
     table.number("gain", options->gain, 0.0, 1000.0, "the difference is multiplied by this in the PNG");
     table.number("psnr", options->least_psnr, 0.0, 200.0, "least PSNR that passes, dB");
-    table.number("wrong-hits", options->most_wrong_hits, 0.0, 100.0, "most pixels with another first hit, percent");
+    table.number("wrong-hits", options->most_wrong_hits, 0.0, 100.0,
+                 "most pixels with another first hit, percent");
     table.flag("json", options->json, "print JSON");
     return {app, [options] { return run(*options); }};
 }

@@ -44,13 +44,14 @@ class Reader {
         const bool word = key.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos;
         const CLI::Option* known = word ? app_.get_option_no_throw("--" + key) : nullptr;
         if (!known || key == "config" || key == "help") {
-            fail(node.source(), "unknown key '" + printable(key) + "'; keys are the options of '" + app_.get_name() +
-                                    "' without their dashes, see --help");
+            fail(node.source(), "unknown key '" + printable(key) + "'; keys are the options of '" +
+                                    app_.get_name() + "' without their dashes, see --help");
         }
         const bool flag = known->get_items_expected_max() == 0;
         const bool several = known->get_items_expected_max() > 1;
         if (flag != node.is_boolean()) {
-            fail(node.source(), "key '" + key + "': expected " + (flag ? "true or false" : "a number or a word"));
+            fail(node.source(),
+                 "key '" + key + "': expected " + (flag ? "true or false" : "a number or a word"));
         }
         if (const toml::array* list = node.as_array()) {
             if (!several) fail(node.source(), "key '" + key + "': expected one value, not a list");
@@ -64,7 +65,8 @@ class Reader {
         std::string word;
         if (const auto text = node.value_exact<std::string>()) {
             word = *text;
-            // Empty is the default of file names; as anything else it is an error, found by the option's own check.
+            // Empty is the default of file names; as anything else it is an error, found by the option's own
+            // check.
             if (word.empty() && (key == "view" || key == "scene")) return;
         } else if (const auto whole = node.value_exact<std::int64_t>()) {
             word = std::to_string(*whole);

@@ -8,8 +8,8 @@
 
 namespace raycell {
 
-/// Turns a configuration file into arguments for `app`. Throws UsageError naming file, line and key for what is not
-/// TOML, for keys that the command doesn't know and for values of the wrong kind.
+/// Turns a configuration file into arguments for `app`. Throws UsageError naming file, line and key for what
+/// is not TOML, for keys that the command doesn't know and for values of the wrong kind.
 std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app);
 
 /// The effective options as a configuration file that reproduces the run.

@@ -1,10 +1,9 @@
 // raycell: renders with the simulated machine, renders the truth, compares pictures.
-#include <systemc>
-
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <new>
+#include <systemc>
 
 #include "scenes/diagnostics.hpp"
 #include "testbench/raycell/commands.hpp"

@@ -18,8 +18,7 @@ std::string reason_of(int error) { return std::strerror(error); }
     throw std::runtime_error(std::string("can't ") + what + " " + path + ": " + why);
 }
 
-NewFile::NewFile(const std::string& path)
-    : path_(path), partial_(path + ".part" + std::to_string(getpid())) {
+NewFile::NewFile(const std::string& path) : path_(path), partial_(path + ".part" + std::to_string(getpid())) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
     if (fs::exists(status) && !fs::is_regular_file(status)) {

@@ -23,8 +23,8 @@ void OptionTable::flag(const std::string& name, bool& target, const std::string&
 void OptionTable::size(const std::string& name, int& width, int& height, const std::string& help) {
     const auto parse = [](const std::string& word, int& w, int& h) {
         const auto x = word.find('x');
-        return x != std::string::npos && parse_number(word.substr(0, x), w) && parse_number(word.substr(x + 1), h) &&
-               w >= 1 && h >= 1 && w <= 4096 && h <= 4096;
+        return x != std::string::npos && parse_number(word.substr(0, x), w) &&
+               parse_number(word.substr(x + 1), h) && w >= 1 && h >= 1 && w <= 4096 && h <= 4096;
     };
     const auto check = [parse](const std::string& word) -> std::string {
         int w = 0;
@@ -37,7 +37,8 @@ void OptionTable::size(const std::string& name, int& width, int& height, const s
         ->default_str(std::to_string(width) + "x" + std::to_string(height))
         ->take_last();
     entries_.push_back({name, [&width, &height] {
-                            return nlohmann::ordered_json(std::to_string(width) + "x" + std::to_string(height));
+                            return nlohmann::ordered_json(std::to_string(width) + "x" +
+                                                          std::to_string(height));
                         }});
 }
 
@@ -57,8 +58,8 @@ void OptionTable::costs(CostTable& table) {
             return error.what();
         }
     };
-    app_.add_option_function<std::vector<std::string>>("--cost", set,
-                                                       "cycles of an operation; may come several times. " + names)
+    app_.add_option_function<std::vector<std::string>>(
+            "--cost", set, "cycles of an operation; may come several times. " + names)
         ->check(CLI::Validator(check, "NAME=CYCLES"))
         ->allow_extra_args(false);  // one entry each time; what follows may be the scene
     entries_.push_back({"cost", [&table] {
@@ -80,7 +81,8 @@ void add_scene_options(OptionTable& table, RenderOptions& options) {
     PictureSettings& p = options.picture;
     table.text("scene", options.scene, "FILE", "scene: .nff or .obj");
     table.positional("file", options.scene, "the same; has precedence over --scene");
-    table.text("output", options.prefix, "PREFIX", "where results go: PREFIX.exr, PREFIX.png, PREFIX.json, ...");
+    table.text("output", options.prefix, "PREFIX",
+               "where results go: PREFIX.exr, PREFIX.png, PREFIX.json, ...");
     table.text("view", options.view, "FILE.nff", "take background, view and sources from this file");
     table.choice("viewer", p.viewer, {{"scene", ViewerMode::scene}, {"infinity", ViewerMode::infinity}},
                  "viewer at the scene's distance, or at infinity (axial primary rays)");
@@ -111,14 +113,16 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
                  "what a cell compares a ray with");
     table.choice("normals", p.normals, {{"linear", Normals::linear}, {"voxel", Normals::voxel}},
                  "normals interpolated at the hit, or one per voxel");
-    table.choice("shadows", p.shadows,
-                 {{"per-hit", Shadows::per_hit}, {"precast", Shadows::precast}, {"memo", Shadows::memo}},
-                 "a ray per hit and source; a bit per voxel and source before tracing; the same when first hit");
+    table.choice(
+        "shadows", p.shadows,
+        {{"per-hit", Shadows::per_hit}, {"precast", Shadows::precast}, {"memo", Shadows::memo}},
+        "a ray per hit and source; a bit per voxel and source before tracing; the same when first hit");
     table.choice("exterior", p.exterior, {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},
                  "rays that leave the cube: traced on by the exterior processors, or lost");
     static int exact = 0;  // the only arithmetic so far; named so that configurations say what they ran with
     table.choice("arithmetic", exact, {{"exact", 0}}, "numbers of the cell: double precision");
-    table.number("word-bits", m.word_bits, 8, 32, "bits of a word in messages and voxels, for link cycles and storage");
+    table.number("word-bits", m.word_bits, 8, 32,
+                 "bits of a word in messages and voxels, for link cycles and storage");
     table.number("ray-store", m.ray_store, 1, 1024, "M, rays that a cell can store, slots");
     table.number("buffer", m.buffer_depth, 1, 1024, "depth of every buffer, messages");
     table.choice("networks", m.networks,
@@ -133,11 +137,14 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
                  "slots kept by generation, or free for all");
     table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
     table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
-    table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62, "timed engine: stop after so many cycles; 0: never");
+    table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62,
+                 "timed engine: stop after so many cycles; 0: never");
     table.number("voxel-capacity", p.voxel_capacity, 0, 1000000, "voxels that a cell can hold; 0: unlimited");
-    table.number("normal-offset", p.normal_offset, 0.0, 1.0, "start of secondary rays off their polygon, cells");
+    table.number("normal-offset", p.normal_offset, 0.0, 1.0,
+                 "start of secondary rays off their polygon, cells");
     table.number("exterior-processors", m.exterior_processors, 1, 1000000, "processors outside the cube");
-    table.number("exterior-latency", m.exterior_latency, 1, 1000000000, "cycles that one of them takes for a ray");
+    table.number("exterior-latency", m.exterior_latency, 1, 1000000000,
+                 "cycles that one of them takes for a ray");
     table.number("seed", m.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1, "of the back-off's jitter");
     table.costs(m.costs);
     table.flag("truth", options.truth, "render the truth too and report the accuracy");

@@ -1,4 +1,5 @@
-// The options of the programs: one table that makes --help, the configuration file and the JSON's config block.
+// The options of the programs: one table that makes --help, the configuration file and the JSON's config
+// block.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -82,7 +83,8 @@ void OptionTable::number(const std::string& name, T& target, T least, T most, co
         // Written so that NaN fails too.
         if (!parse_number(word, value) || !(value >= least && value <= most)) {
             std::ostringstream text;
-            text << "expected a number from " << least << " to " << most << ", not '" << printable(word) << "'";
+            text << "expected a number from " << least << " to " << most << ", not '" << printable(word)
+                 << "'";
             return text.str();
         }
         return "";
@@ -125,7 +127,8 @@ void OptionTable::choice(const std::string& name, E& target, std::vector<std::pa
         ->check(CLI::Validator(known, words))
         ->default_str(name_of_value(target))
         ->take_last();
-    entries_.push_back({name, [&target, name_of_value] { return nlohmann::ordered_json(name_of_value(target)); }});
+    entries_.push_back(
+        {name, [&target, name_of_value] { return nlohmann::ordered_json(name_of_value(target)); }});
 }
 
 }  // namespace raycell

@@ -1,7 +1,5 @@
 #include "testbench/raycell/picture_file.hpp"
 
-#include "testbench/raycell/new_file.hpp"
-
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -18,6 +16,8 @@
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
+
+#include "testbench/raycell/new_file.hpp"
 
 namespace raycell {
 

@@ -50,7 +50,8 @@ void check_memory(const RenderOptions& options) {
     const double there = double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
     if (needed > there) {
         throw UsageError("--cells: " + std::to_string(std::llround(needed / 1e9)) +
-                         " GB would be needed for so many cells, " + std::to_string(std::llround(there / 1e9)) +
+                         " GB would be needed for so many cells, " +
+                         std::to_string(std::llround(there / 1e9)) +
                          " GB are free; expected a smaller array");
     }
 }
@@ -70,7 +71,8 @@ struct Run {
 
 /// Peaks per cell; a link's buffers stand at the cell that it leads to.
 std::string cells_csv(Array& array, int width, int height) {
-    std::string text = "x,y,voxels,edges,ray_store_peak,ray_buffers_peak,answer_buffers_peak,link_busy_cycles\n";
+    std::string text =
+        "x,y,voxels,edges,ray_store_peak,ray_buffers_peak,answer_buffers_peak,link_busy_cycles\n";
     struct Row {
         int rays = 0;
         int answers = 0;
@@ -115,8 +117,8 @@ Run run_timed(const RenderOptions& options, const CellScene& scene, const Exteri
     Run run;
     const auto start = Clock::now();
     const std::uint64_t before = memory_bytes();
-    // Never destroyed: SystemC takes ports down in quadratic time (minutes for 256x256 cells), and a process has only
-    // one elaboration anyway.
+    // Never destroyed: SystemC takes ports down in quadratic time (minutes for 256x256 cells), and a process
+    // has only one elaboration anyway.
     static Machine* const kept = new Machine("machine", scene, options.picture, options.machine, tracer);
     Machine& machine = *kept;
     const std::uint64_t cells = std::uint64_t(options.picture.width) * std::uint64_t(options.picture.height);
@@ -160,7 +162,8 @@ Run run_untimed(const RenderOptions& options, const CellScene& scene, const Exte
         result.overflowed += store.overflowed;
         const auto width = std::size_t(options.picture.width);
         run.cells_csv += std::to_string(index % width) + "," + std::to_string(index / width) + "," +
-                         std::to_string(store.voxels.size()) + "," + std::to_string(store.edges.size()) + "\n";
+                         std::to_string(store.voxels.size()) + "," + std::to_string(store.edges.size()) +
+                         "\n";
         ++index;
     }
     if (result.overflowed > 0) result.verdict = Verdict::capacity;
@@ -172,7 +175,10 @@ Json model_report(const Run& run) {
     const double seconds = r.wall_load + r.wall_precast + r.wall_trace;
     const double hops = double(r.counters.load_hops + r.counters.rays.ray_hops + r.counters.rays.return_hops);
     return {{"wall_seconds",
-             {{"build", run.wall_build}, {"load", r.wall_load}, {"precast", r.wall_precast}, {"trace", r.wall_trace}}},
+             {{"build", run.wall_build},
+              {"load", r.wall_load},
+              {"precast", r.wall_precast},
+              {"trace", r.wall_trace}}},
             {"hops_per_second", seconds > 0 ? hops / seconds : 0.0},
             {"peak_memory_bytes", peak_memory_bytes()},
             {"bytes_per_cell", run.bytes_per_cell}};
@@ -186,7 +192,8 @@ Json render_truth(const RenderOptions& options, const CellScene& scene, const Pi
     const Picture exact = truth.render();
     outputs.write(".truth.exr", [&](const std::string& path) { write_exr(exact, path); });
     outputs.write(".truth.png", [&](const std::string& path) { write_png(exact, path); });
-    outputs.write(".difference.png", [&](const std::string& path) { write_png(difference(picture, exact), path); });
+    outputs.write(".difference.png",
+                  [&](const std::string& path) { write_png(difference(picture, exact), path); });
     return report(compare(picture, exact));
 }
 
@@ -204,11 +211,14 @@ void summarise(const RenderOptions& options, const Json& json) {
 
 int exit_code(Verdict verdict) {
     switch (verdict) {
-        case Verdict::completed: return exit_done;
+        case Verdict::completed:
+            return exit_done;
         case Verdict::deadlock:
-        case Verdict::livelock: return exit_stuck;
+        case Verdict::livelock:
+            return exit_stuck;
         case Verdict::cycle_limit:
-        case Verdict::capacity: return exit_limit;
+        case Verdict::capacity:
+            return exit_limit;
     }
     return exit_usage;
 }
@@ -221,7 +231,8 @@ void explain(const RunResult& result) {
     }
     std::cerr << '\n';
     constexpr std::size_t shown = 10;
-    for (std::size_t i = 0; i < result.report.size() && i < shown; ++i) std::cerr << "  " << result.report[i] << '\n';
+    for (std::size_t i = 0; i < result.report.size() && i < shown; ++i)
+        std::cerr << "  " << result.report[i] << '\n';
     if (result.report.size() > shown) {
         std::cerr << "  ... " << result.report.size() << " in all, see deadlock.report in the JSON\n";
     }

@@ -45,7 +45,8 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                       {"distribution", stage(distributors, result.load_cycles * Cycle(picture.height))},
                       {"exterior", stage(result.exterior, (result.precast_cycles + result.trace_cycles) *
                                                               Cycle(machine.exterior_processors))}};
-    const double cell_cycles = double(result.precast_cycles + result.trace_cycles) * picture.width * picture.height;
+    const double cell_cycles =
+        double(result.precast_cycles + result.trace_cycles) * picture.width * picture.height;
     json["units"] = {
         {"traversal", {{"utilisation", cell_cycles > 0 ? double(c.traversal_cycles) / cell_cycles : 0.0}}},
         {"shading", {{"utilisation", cell_cycles > 0 ? double(c.shading_cycles) / cell_cycles : 0.0}}}};
@@ -54,8 +55,11 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                     {"refracted", c.rays.refracted}, {"shadow", c.rays.shadow},
                     {"precast", c.rays.precast},     {"lost", c.rays.lost},
                     {"exterior", c.rays.exterior}};
-    json["messages"] = {{"rays", {{"sent", c.rays_sent}, {"answered", c.rays_answered},
-                                  {"silent", c.rays_silent}, {"destroyed", c.rays_destroyed}}},
+    json["messages"] = {{"rays",
+                         {{"sent", c.rays_sent},
+                          {"answered", c.rays_answered},
+                          {"silent", c.rays_silent},
+                          {"destroyed", c.rays_destroyed}}},
                         {"answers", {{"sent", c.answers_sent}, {"delivered", c.answers_delivered}}},
                         {"load", {{"sent", c.loads_sent}, {"delivered", c.loads_delivered}}}};
     json["voxels"] = {

@@ -23,7 +23,8 @@ CellScene read_and_place(const RenderOptions& options) {
                          "a scene whose extent is within reach of the viewer's distance");
     }
     CellScene placed = place_scene(scene, frame, options.picture);
-    for (const std::string& warning : placed.warnings) std::cerr << scene.name << ": warning: " << warning << '\n';
+    for (const std::string& warning : placed.warnings)
+        std::cerr << scene.name << ": warning: " << warning << '\n';
     return placed;
 }
 
@@ -32,7 +33,8 @@ void check_output(const std::string& prefix) {
     const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
     if (path.filename().empty() || !std::filesystem::is_directory(folder) ||
         access(folder.c_str(), W_OK | X_OK) != 0) {
-        throw UsageError("--output " + prefix + ": expected a name in a folder that exists and can be written to");
+        throw UsageError("--output " + prefix +
+                         ": expected a name in a folder that exists and can be written to");
     }
 }
 

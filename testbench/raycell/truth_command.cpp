@@ -67,12 +67,14 @@ Command add_truth_command(CLI::App& program) {
     auto options = std::make_shared<TruthOptions>();
     CLI::App* app = program.add_subcommand("truth", "Renders a scene exactly, without the machine");
     auto table = std::make_shared<OptionTable>(*app);
-    app->add_option("--config", "options from a file as 'render' writes them; the command line has precedence")
+    app->add_option("--config",
+                    "options from a file as 'render' writes them; the command line has precedence")
         ->type_name("FILE");
     add_scene_options(*table, *options);
     table->flag("clip", options->clip, "clip the scene to the cube");
-    table->number("count", options->count, 0, 8193,
-                  "count rays by the rules of the SPD instead of rendering: so many each way, 513 for theirs");
+    table->number(
+        "count", options->count, 0, 8193,
+        "count rays by the rules of the SPD instead of rendering: so many each way, 513 for theirs");
     return {app, [options, table] { return run(*options, *table); }};
 }
 
