@@ -44,9 +44,8 @@ Cycle Cell::step(Cycle now) {
     }
     finish_traversal(now);
     finish_shading(now);
-    // A reply that found no way goes before the answers that pass through: neither can be kept waiting for
-    // ever.
-    if (reply_waits_) {
+    // Replies of this cell and answers that pass through take turns when both want to go.
+    if (replies_first_) {
         move_replies(now);
         move_answers(now);
     } else {
@@ -310,7 +309,7 @@ bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, cons
 bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     const std::uint32_t object = store_.voxels[packet.visit.hit.voxel].object;
     if (!may_wait(env_.context, packet.ray, object)) {
-        if (shading_.job != Shading::Job::idle) return false;
+        if (shading_.job != Shading::Job::idle || slot_complete()) return false;
         remove_from(place);
         begin_direct(packet, now);
         return true;
@@ -343,43 +342,69 @@ bool Cell::busy() const {
            root_waits_ || root_to_send_;
 }
 
+namespace {
+
+constexpr const char* side_names[] = {"east", "south", "west", "north"};
+
+std::string name_ray(std::uint64_t id) {
+    return std::to_string(id >> 32) + "/" + std::to_string(id & 0xffffffffU);
+}
+
+std::string describe_ray(const RayPacket& packet) {
+    const Ray& ray = packet.ray;
+    std::string text = "ray " + name_ray(ray.id) + " of generation " + std::to_string(ray.generation);
+    if (packet.stage != RayPacket::Stage::decided) return text + ", not yet tested";
+    switch (packet.visit.event) {
+        case Visit::Event::forward:
+            return text + ", waits for the output " + side_names[int(packet.visit.crossing.side)] +
+                   " or, at the border, for the answer network";
+        case Visit::Event::hit:
+            return text + (is_shadow(ray.kind)
+                               ? ", waits for the answer network"
+                               : ", waits for a slot, the shading unit or the answer network");
+        case Visit::Event::leaves_cube:
+        case Visit::Event::reaches_source:
+            return text + ", waits for the answer network";
+    }
+    return text;
+}
+
+}  // namespace
+
 std::vector<std::string> Cell::describe_blocked() const {
     std::vector<std::string> lines;
     const std::string at = "cell (" + std::to_string(x_) + ", " + std::to_string(y_) + ") ";
-    const auto ray_text = [](const Ray& ray) {
-        return "ray " + std::to_string(ray.id >> 32) + "/" + std::to_string(ray.id & 0xffffffffU) +
-               " of generation " + std::to_string(ray.generation);
-    };
-    constexpr const char* sides[] = {"east", "south", "west", "north"};
     for (std::size_t place = 0; place < ray_inputs_.size(); ++place) {
         const RayPacket* packet = packet_at(place);
         if (!packet) continue;
         const RayInput& input = ray_inputs_[place];
-        std::string line = at + "input " + sides[int(input.side)] + " class " + std::to_string(input.index) +
-                           ": " + ray_text(packet->ray) + " since cycle " +
-                           std::to_string(input.link->arrival(input.index)) + " waits for ";
-        line += packet->visit.event == Visit::Event::hit
-                    ? "a slot or the answer network"
-                    : std::string("the output ") + sides[int(packet->visit.crossing.side)];
-        lines.push_back(line);
+        lines.push_back(at + "input " + side_names[int(input.side)] + " class " +
+                        std::to_string(input.index) + " since cycle " +
+                        std::to_string(input.link->arrival(input.index)) + ": " + describe_ray(*packet));
     }
     for (int side = 0; side < side_count; ++side) {
         const LinkIn* in = in_[std::size_t(side)];
         if (!in) continue;
         const Message message = in->front(env_.classes.answer);
         if (message.kind != Message::Kind::answer) continue;
-        lines.push_back(at + "input " + sides[side] + ": answer to ray " +
-                        std::to_string(message.answer->id >> 32) + "/" +
-                        std::to_string(message.answer->id & 0xffffffffU) + " since cycle " +
-                        std::to_string(in->arrival(env_.classes.answer)) + " waits for the output " +
-                        sides[int(route(*message.answer))]);
+        lines.push_back(at + "input " + side_names[side] + " since cycle " +
+                        std::to_string(in->arrival(env_.classes.answer)) + ": answer to ray " +
+                        name_ray(message.answer->id) +
+                        (local(*message.answer) ? ", is home"
+                                                : std::string(", waits for the output ") +
+                                                      side_names[int(route(*message.answer))]));
+    }
+    if (own_) {
+        lines.push_back(at + "own ray since cycle " + std::to_string(own_->decided) + ": " +
+                        describe_ray(*own_));
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];
         if (slot.state == Slot::State::empty || !slot.packet) continue;
-        lines.push_back(at + "slot " + std::to_string(i) + ": " + ray_text(slot.packet->ray) +
-                        " since cycle " + std::to_string(slot.since) +
-                        (slot.child ? ", its child can't leave" : ", waits for answers"));
+        const Ray& ray = slot.packet->ray;
+        lines.push_back(at + "slot " + std::to_string(i) + " since cycle " + std::to_string(slot.since) +
+                        ": ray " + name_ray(ray.id) + " of generation " + std::to_string(ray.generation) +
+                        (slot.child ? "; its child: " + describe_ray(*slot.child) : ", waits for answers"));
     }
     return lines;
 }

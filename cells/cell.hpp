@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,8 +20,9 @@ class Cell {
   public:
     Cell(Environment& environment, int x, int y);
 
-    /// Null links: the array's border. `load` is the way in from the row's distributor, or the west link.
+    /// Null links: the array's border.
     void connect(Side side, LinkIn* in, LinkOut* out);
+    /// The way in of load messages: the row's distributor, or the west link.
     void connect_load(LinkIn* load) { load_in_ = load; }
 
     /// Begins the environment's phase in the next cycle.
@@ -39,7 +39,7 @@ class Cell {
     std::uint64_t schedule_hash() const { return hash_; }
     /// True while anything in the cell is unfinished: a unit at work, a slot in use, an own ray not answered.
     bool busy() const;
-    /// What holds the cell up, a line each ("" if nothing): for reports of runs that stopped.
+    /// What stands in the cell, a line each: for reports of runs that stopped.
     std::vector<std::string> describe_blocked() const;
 
   private:
@@ -92,8 +92,11 @@ class Cell {
     void feed_own(Cycle now);
     RayPacket* next_child(Slot& slot, std::uint32_t index, Cycle now);
     bool complete(const Slot& slot) const;
+    bool slot_complete() const;
     void finish_shading(Cycle now);
     void start_shading(Cycle now);
+    void begin_shade(std::uint32_t index, Cycle now);
+    void begin_set_up(std::uint32_t index, Cycle now);
     void begin_direct(RayPacket& packet, Cycle now);
     void release_slot(std::uint32_t index, Cycle now);
     Cycle backoff(std::uint64_t id, unsigned attempt) const;
@@ -118,9 +121,9 @@ class Cell {
     RayStore ray_store_;
     Traversal traversal_;
     Shading shading_;
-    std::size_t next_test_ = 0;  ///< round robin over places
-    bool reply_waits_ = false;   ///< a reply of this cell found no way in its last cycle
-    Cycle store_port_ = never;   ///< cycle in which the ray store's one write port was used
+    std::size_t next_test_ = 0;   ///< round robin over places
+    bool replies_first_ = false;  ///< this cycle replies go before passing answers: the last one they lost
+    Cycle store_port_ = never;    ///< cycle in which the ray store's one write port was used
     Cycle load_done_ = 0;
     LoadItem* load_item_ = nullptr;
     RayPacket* own_ = nullptr;  ///< primary or precast ray on its way out

@@ -174,39 +174,60 @@ bool Cell::complete(const Slot& slot) const {
     return (slot.setup.facing & ~store_.known[slot.packet->visit.hit.voxel]) == 0;
 }
 
+bool Cell::slot_complete() const {
+    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
+        if (complete(ray_store_[i])) return true;
+    }
+    return false;
+}
+
 void Cell::start_shading(Cycle now) {
     if (shading_.job != Shading::Job::idle) return;
-    // Finish before you begin: a shaded slot is a slot free again.
+    // Finish before you begin: a shaded slot is a slot free again. Oldest first among equals.
+    constexpr std::uint32_t none = ~std::uint32_t(0);
+    std::uint32_t shade = none;
+    std::uint32_t set_up = none;
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
-        Slot& slot = ray_store_[i];
-        if (!complete(slot)) continue;
-        const CellHit& hit = slot.packet->visit.hit;
-        if (env_.context.settings.shadows != Shadows::per_hit) slot.lit = store_.lit[hit.voxel];
-        slot.result = shade_hit(env_.context, slot.setup, store_.voxels[hit.voxel].object, slot.lit,
-                                slot.colour[0], slot.colour[1]);
-        slot.state = Slot::State::in_shading;
-        const std::uint32_t cycles = shade_cycles(slot.lit & slot.setup.facing, env_.costs());
-        shading_ = {Shading::Job::shade, i, now + cycles, nullptr, dvec3(0)};
-        env_.counters.shading_cycles += cycles;
-        want(shading_.done);
-        return;
-    }
-    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
-        Slot& slot = ray_store_[i];
-        if (slot.state != Slot::State::to_set_up) continue;
-        const RayPacket& packet = *slot.packet;
-        slot.setup = set_up_hit(env_.context, store_, packet.ray, packet.visit.hit, x_, y_);
-        if (packet.ray.kind == RayKind::primary) {
-            record_first_hit(env_.picture.pixels[std::size_t(packet.ray.id >> 32)], slot.setup,
-                             store_.voxels[packet.visit.hit.voxel].polygon);
+        const Slot& slot = ray_store_[i];
+        if (complete(slot) && (shade == none || slot.since < ray_store_[shade].since)) shade = i;
+        if (slot.state == Slot::State::to_set_up &&
+            (set_up == none || slot.since < ray_store_[set_up].since)) {
+            set_up = i;
         }
-        slot.state = Slot::State::in_setup;
-        const std::uint32_t cycles = setup_cycles(env_.context, slot.setup, env_.costs());
-        shading_ = {Shading::Job::set_up, i, now + cycles, nullptr, dvec3(0)};
-        env_.counters.shading_cycles += cycles;
-        want(shading_.done);
-        return;
     }
+    if (shade != none) {
+        begin_shade(shade, now);
+    } else if (set_up != none) {
+        begin_set_up(set_up, now);
+    }
+}
+
+void Cell::begin_shade(std::uint32_t index, Cycle now) {
+    Slot& slot = ray_store_[index];
+    const CellHit& hit = slot.packet->visit.hit;
+    if (env_.context.settings.shadows != Shadows::per_hit) slot.lit = store_.lit[hit.voxel];
+    slot.result = shade_hit(env_.context, slot.setup, store_.voxels[hit.voxel].object, slot.lit,
+                            slot.colour[0], slot.colour[1]);
+    slot.state = Slot::State::in_shading;
+    const std::uint32_t cycles = shade_cycles(slot.lit & slot.setup.facing, env_.costs());
+    shading_ = {Shading::Job::shade, index, now + cycles, nullptr, dvec3(0)};
+    env_.counters.shading_cycles += cycles;
+    want(shading_.done);
+}
+
+void Cell::begin_set_up(std::uint32_t index, Cycle now) {
+    Slot& slot = ray_store_[index];
+    const RayPacket& packet = *slot.packet;
+    slot.setup = set_up_hit(env_.context, store_, packet.ray, packet.visit.hit, x_, y_);
+    if (packet.ray.kind == RayKind::primary) {
+        record_first_hit(env_.picture.pixels[std::size_t(packet.ray.id >> 32)], slot.setup,
+                         store_.voxels[packet.visit.hit.voxel].polygon);
+    }
+    slot.state = Slot::State::in_setup;
+    const std::uint32_t cycles = setup_cycles(env_.context, slot.setup, env_.costs());
+    shading_ = {Shading::Job::set_up, index, now + cycles, nullptr, dvec3(0)};
+    env_.counters.shading_cycles += cycles;
+    want(shading_.done);
 }
 
 void Cell::begin_direct(RayPacket& packet, Cycle now) {
@@ -251,7 +272,7 @@ void Cell::finish_shading(Cycle now) {
 }
 
 void Cell::move_replies(Cycle now) {
-    reply_waits_ = false;
+    bool waits = false;
     if (shading_.job == Shading::Job::direct_answer) {
         Answer answer = answer_to(shading_.packet->ray, Answer::Kind::intensity);
         answer.colour = shading_.result;
@@ -261,7 +282,7 @@ void Cell::move_replies(Cycle now) {
             env_.pools.rays.give_back(packet);
             shading_.job = Shading::Job::idle;
         } else {
-            reply_waits_ = true;
+            waits = true;
         }
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
@@ -270,12 +291,13 @@ void Cell::move_replies(Cycle now) {
         Answer answer = answer_to(slot.packet->ray, Answer::Kind::intensity);
         answer.colour = slot.result;
         if (!send_answer(answer, now)) {
-            reply_waits_ = true;
+            waits = true;
             continue;
         }
         ++env_.counters.rays_answered;
         release_slot(i, now);
     }
+    replies_first_ = waits && !replies_first_;
 }
 
 void Cell::release_slot(std::uint32_t index, Cycle now) {

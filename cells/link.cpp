@@ -56,6 +56,23 @@ void Link::watch(int index, std::uint32_t* pending, std::uint32_t bits) {
     if (buffer.count > 0) *pending |= bits;
 }
 
+Link::ClassStatistics Link::statistics(int index) const {
+    const Buffer& buffer = buffers_[std::size_t(index)];
+    ClassStatistics sum = buffer.statistics;
+    for (std::uint32_t i = 0; i < buffer.count; ++i) {
+        sum.occupied_cycles += scheduler_.now() - buffer.ring[(buffer.head + i) % buffer.ring.size()].sent;
+    }
+    return sum;
+}
+
+void Link::reset_statistics() {
+    busy_cycles_ = 0;
+    for (Buffer& buffer : buffers_) {
+        buffer.statistics = ClassStatistics();
+        buffer.statistics.peak = int(buffer.count);
+    }
+}
+
 Message Link::front(int index) const {
     const Buffer& buffer = buffers_[std::size_t(index)];
     if (buffer.count == 0) return {};

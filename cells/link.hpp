@@ -77,7 +77,10 @@ class Link : public LinkOut, public LinkIn {
 
     int classes() const { return int(buffers_.size()); }
     int depth() const { return depth_; }
-    const ClassStatistics& statistics(int index) const { return buffers_[std::size_t(index)].statistics; }
+    /// Since the last reset; what still stands in a buffer counts up to now.
+    ClassStatistics statistics(int index) const;
+    /// Begins a phase: counts anew.
+    void reset_statistics();
     std::uint64_t busy_cycles() const { return busy_cycles_; }
 
   private:

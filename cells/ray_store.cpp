@@ -45,4 +45,12 @@ void RayStore::release(std::uint32_t index, int generation) {
     if (!used_by_.empty()) --used_by_[group(generation)];
 }
 
+Cycle RayStore::waiting_cycles(Cycle now) const {
+    Cycle sum = 0;
+    for (const Slot& slot : slots_) {
+        if (slot.state != Slot::State::empty) sum += now - slot.since;
+    }
+    return sum;
+}
+
 }  // namespace raycell

@@ -46,6 +46,8 @@ class RayStore {
     int used() const { return used_; }
     int capacity() const { return capacity_; }
     int peak() const { return peak_; }
+    /// Cycles that the rays now in the store have spent there.
+    Cycle waiting_cycles(Cycle now) const;
 
   private:
     std::size_t group(int generation) const;

@@ -37,6 +37,8 @@ class Scheduler : public sc_core::sc_module {
 
     /// No cycle after this one is run; limit_reached() tells that there would have been one.
     void set_limit(Cycle limit) { limit_ = limit; }
+    /// Whether the watch ended the run.
+    bool stopped() const { return stopped_; }
     bool limit_reached() const { return limit_reached_; }
 
     /// Called before the clients of a cycle; returning false ends the run: nobody is woken any more.

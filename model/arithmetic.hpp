@@ -1,6 +1,7 @@
-// The door to the cell's arithmetic: every operator beyond add, subtract and multiply that a cell performs.
-// The walk, the hit tests and the shading call these and nothing from <cmath>, so another arithmetic (words
-// of fixed length, table look-ups) replaces them here and nowhere else.
+// The door to the cell's arithmetic: the operators that cost a cell more than an addition or a
+// multiplication. Walk, hit tests and shading call these, so another arithmetic (words of fixed length, table
+// look-ups) replaces them here. Signs and whole parts of numbers (abs, floor, clamp) are wiring and stay
+// where they are used.
 #pragma once
 
 #include <cmath>

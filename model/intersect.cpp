@@ -38,11 +38,12 @@ bool inside_pieces(const CellStore& store, const Voxel& voxel, const dvec2& uv) 
 bool inside_mask(const Voxel& voxel, const dvec3& point, double level) {
     const double near = voxel.near_level * level;
     const double height = (voxel.far_level - voxel.near_level) * level;
-    const dvec3 scaled{point.x, point.y, (point.z - near) / height};
+    const dvec3 scaled{point.x, point.y, (point.z - near) * arith::reciprocal(height)};
     const dvec2 uv = project(scaled, voxel.drop) * double(window_steps);
     const dvec2 low{voxel.window[0], voxel.window[2]};
     const dvec2 high{voxel.window[1], voxel.window[3]};
-    const dvec2 place = (uv - low) / (high - low);
+    const dvec2 size = high - low;
+    const dvec2 place = (uv - low) * dvec2(arith::reciprocal(size.x), arith::reciprocal(size.y));
     constexpr double rounding = 1e-6;  // of the window: the neighbour's mask must not leave a crack
     if (glm::any(glm::lessThan(place, dvec2(-rounding))) ||
         glm::any(glm::greaterThan(place, dvec2(1 + rounding)))) {

@@ -1,5 +1,7 @@
 #include "model/message.hpp"
 
+#include <algorithm>
+
 namespace raycell {
 namespace {
 
@@ -30,7 +32,10 @@ MessageBits message_bits(const PictureSettings& picture, const MachineSettings& 
     constexpr int generation = 6;
     constexpr int child = 6;
     const int home = bits_for(picture.width) + bits_for(picture.height);
-    const int slot = bits_for(machine.ray_store) + 1;
+    // A slot, or none (the pixel itself); verdicts on voxels name the voxel instead, up to 1024 in a cell.
+    constexpr int voxel_index = 10;
+    int slot = bits_for(machine.ray_store + 1);
+    if (picture.shadows != Shadows::per_hit) slot = std::max(slot, voxel_index);
     const int address = home + slot + child;
     MessageBits bits;
     // Position 3 words, direction 3, reciprocals of dx and dy 2, weight 1; flags: fresh, outside, side left.
@@ -41,11 +46,12 @@ MessageBits message_bits(const PictureSettings& picture, const MachineSettings& 
     const int columns = 2 * bits_for(picture.width);
     const int gouraud = picture.display == Display::gouraud ? 6 * word : 0;
     const int normals = 9 * word;
-    const int plane = 4 * word + 2;
+    const int plane = 5 * word + 2;  // with its slack
     const int edges = 4 * 3 * word + 3;
     // X1, Xr, near and far with their increments and bounds, plane, normal field, edges (paper, section 3.1).
     bits.span = type + polygon_id + columns + 6 * word + plane + normals + edges + gouraud;
     bits.trapeze = type + polygon_id + 4 * 3 * word + plane + normals + edges + 2 * gouraud;
+    bits.polygon = type + polygon_id + plane + normals;  // and its vertices
     bits.features = type + 3 * 8 + 3 * 8 + 12 + 12 + 1;
     bits.end_of_scene = type;
     bits.viewer = type + 3 * word + 6;

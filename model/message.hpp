@@ -31,6 +31,7 @@ struct MessageBits {
     int verdict = 0;  ///< also the postponed notice
     int span = 0;
     int trapeze = 0;
+    int polygon = 0;  ///< without its vertices, 3 words each
     int features = 0;
     int end_of_scene = 0;
     int setup(std::size_t sources) const { return viewer + int(sources) * source; }

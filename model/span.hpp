@@ -28,8 +28,10 @@ struct Span {
     double d_far = 0;
     double z_min = 0;  ///< bounds of the row's part: for edge-on planes they are all there is
     double z_max = 0;
-    dvec3 slack{0, 0, 0};          ///< Trapeze::slack
-    std::array<dvec3, 8> outline;  ///< the row's part, relative to the cell
+    dvec3 slack{0, 0, 0};  ///< Trapeze::slack
+    /// What edges and bounds enclose, relative to the cell; a cell derives it, the model carries it to save
+    /// its own time.
+    std::array<dvec3, 8> outline;
     int outline_count = 0;
     dvec3 intensity{0, 0, 0};  ///< Gouraud: intensity at the cell's centre (only --display gouraud)
     dvec3 d_intensity{0, 0, 0};

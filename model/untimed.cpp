@@ -162,7 +162,6 @@ bool UntimedMachine::source_visible(const Ray& ray, const CellHit& hit, const Hi
 UntimedMachine::Answer UntimedMachine::answer_hit(const Ray& ray, const CellHit& hit, Place at,
                                                   Pixel* pixel) {
     Answer answer;
-    answer.hit = true;
     count_return(ray, at, pixel);
     if (is_shadow(ray.kind)) {
         answer.blocked = true;

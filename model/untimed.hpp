@@ -43,7 +43,6 @@ class UntimedMachine {
     struct Answer {
         dvec3 colour{0, 0, 0};
         bool blocked = false;
-        bool hit = false;
     };
     struct Place {
         int x;

@@ -192,7 +192,7 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
                     crossing[std::size_t(i)].piece = before.pieces;
                     store.edges.push_back(crossing[std::size_t(i)]);
                 }
-                before.edge_count = std::uint16_t(before.edge_count + crossings);
+                before.edge_count = before.edge_count + std::uint32_t(crossings);
                 ++before.pieces;
             }
         }
@@ -207,7 +207,7 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
     set_normal(voxel);
     if (settings.hit == HitTest::edge && crossings > 0) {
         voxel.first_edge = std::uint32_t(store.edges.size());
-        voxel.edge_count = std::uint16_t(crossings);
+        voxel.edge_count = std::uint32_t(crossings);
         voxel.pieces = 1;
         store.edges.insert(store.edges.end(), crossing.begin(), crossing.begin() + crossings);
     } else {
@@ -233,6 +233,7 @@ VoxelBits voxel_bits(const PictureSettings& settings, int word_bits, std::size_t
     if (settings.normals == Normals::linear) bits.base += 6 * word_bits;
     if (settings.shadows != Shadows::per_hit) {
         bits.base += int(sources) * (settings.shadows == Shadows::memo ? 2 : 1);
+        bits.base += 3 * word_bits;  // the point that its shadow rays start from
     }
     if (settings.hit == HitTest::edge) bits.per_edge = 3 * word_bits + 2;
     return bits;

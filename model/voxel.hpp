@@ -19,8 +19,8 @@ struct Voxel {
     Plane plane;
     NormalField normal;
     std::uint8_t drop = 2;
-    std::uint8_t pieces = 0;  ///< convex pieces told apart by edges; 0: the polygon covers the whole cell
-    std::uint16_t edge_count = 0;
+    std::uint32_t pieces = 0;  ///< convex pieces told apart by edges; 0: the polygon covers the whole cell
+    std::uint32_t edge_count = 0;
     std::uint32_t first_edge = 0;  ///< index into CellStore::edges
     std::uint64_t mask = 0;        ///< bit 8·row + column, over the window
     /// The mask's window: u from, u to, v from, v to, in 32nds of the cell (of the run where an axis is z).

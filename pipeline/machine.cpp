@@ -83,9 +83,16 @@ void Machine::bind_pipeline() {
 }
 
 Cycle Machine::livelock_window() const {
-    // The longest back-off is 127 bases; a ray and its answer may cross the array, all others before them.
-    const Cycle span = Cycle(environment_.width() + environment_.height());
-    return 1000 * (Cycle(environment_.costs().backoff) * 128 + span * 64);
+    // The longest back-off is 127 bases; a ray and its answer may cross the array and visit the exterior, and
+    // each operation may be the dearest of the table, once per source.
+    const Environment& env = environment_;
+    Cycle dearest = 0;
+    for (const auto& [name, member] : CostTable::entries())
+        dearest = std::max(dearest, Cycle(env.costs().*member));
+    const Cycle span = Cycle(env.width() + env.height());
+    const Cycle hop = 64 + Cycle(env.cycles_for(env.bits.ray)) + Cycle(env.costs().walk_step);
+    return 1000 * (Cycle(env.costs().backoff) * 128 + span * hop + Cycle(env.machine.exterior_latency) +
+                   dearest * Cycle(1 + env.context.scene.sources.size()));
 }
 
 bool Machine::watch(void* self, Cycle now) {
@@ -97,6 +104,10 @@ bool Machine::watch(void* self, Cycle now) {
         env.draining = true;
         if (machine.drain_start_ == never) machine.drain_start_ = now;
         if (now - machine.drain_start_ > machine.livelock_window()) return false;
+    } else if (env.draining) {  // something did come home: go on
+        env.draining = false;
+        machine.drain_start_ = never;
+        for (const auto& cell : machine.array_.cells()) env.scheduler.wake(*cell, now + 1);
     }
     constexpr std::uint64_t calls_between_reports = 4096;
     if (machine.progress_ && ++machine.watch_calls_ % calls_between_reports == 0) {
@@ -121,7 +132,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     }
     // No free-running clock: this returns when nobody has anything to do any more.
     sc_core::sc_start();
-    if (!phase_complete(result)) judge(result);
+    if (!phase_complete()) judge(result);
     // A phase is over with its last message; what woke after that only found nothing to do.
     const Cycle end = result.verdict == Verdict::completed
                           ? std::max(environment_.counters.last_progress, environment_.phase_start)
@@ -141,7 +152,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     }
 }
 
-bool Machine::phase_complete(const RunResult&) const {
+bool Machine::phase_complete() const {
     const Counters& c = environment_.counters;
     const std::uint64_t cells = std::uint64_t(environment_.width()) * std::uint64_t(environment_.height());
     switch (environment_.phase) {
@@ -159,10 +170,12 @@ bool Machine::phase_complete(const RunResult&) const {
 }
 
 void Machine::judge(RunResult& result) {
-    if (environment_.draining) {
-        result.verdict = buffers_empty() ? Verdict::livelock : Verdict::deadlock;
-    } else if (scheduler_.limit_reached()) {
+    if (scheduler_.limit_reached()) {
         result.verdict = Verdict::cycle_limit;
+    } else if (environment_.draining) {
+        // Only what stands still though nobody sends any more is locked for certain.
+        const bool at_rest = !scheduler_.stopped();
+        result.verdict = at_rest && !buffers_empty() ? Verdict::deadlock : Verdict::livelock;
     } else {
         result.verdict = Verdict::deadlock;
         if (kick_finds_work()) throw std::logic_error("internal error: a cell that could move was not woken");
@@ -171,19 +184,22 @@ void Machine::judge(RunResult& result) {
 }
 
 bool Machine::buffers_empty() const {
-    for (const auto& link : array_.links()) {
-        for (int index = 0; index < link->classes(); ++index) {
-            if (link->occupancy(index) > 0) return false;
+    const auto empty = [](const std::vector<std::unique_ptr<Link>>& links) {
+        for (const auto& link : links) {
+            for (int index = 0; index < link->classes(); ++index) {
+                if (link->occupancy(index) > 0) return false;
+            }
         }
-    }
-    return true;
+        return true;
+    };
+    return empty(array_.links()) && (!exterior_ || (empty(exterior_->links()) && !exterior_->busy()));
 }
 
 /// Nothing moves by itself: if a step of any cell now changes something, its waking was lost, and the verdict
 /// would be the model's fault, not the machine's.
 bool Machine::kick_finds_work() {
     const std::uint64_t before = array_.schedule_hash();
-    scheduler_.skip(1 << 20);  // past every transfer and back-off
+    scheduler_.skip(Cycle(1) << 40);  // past every transfer, cost and back-off
     for (const auto& cell : array_.cells()) cell->cell().step(scheduler_.now());
     return array_.schedule_hash() != before;
 }
@@ -194,6 +210,19 @@ std::vector<std::string> Machine::stuck_report() const {
         auto more = cell->cell().describe_blocked();
         lines.insert(lines.end(), more.begin(), more.end());
     }
+    const auto add_links = [&lines](const std::vector<std::unique_ptr<Link>>& links) {
+        for (const auto& link : links) {
+            for (int index = 0; index < link->classes(); ++index) {
+                if (link->occupancy(index) == 0) continue;
+                lines.push_back("link " + link->name() + " class " + std::to_string(index) + " since cycle " +
+                                std::to_string(link->arrival(index)) + ": " +
+                                std::to_string(link->occupancy(index)) + " messages");
+            }
+        }
+    };
+    add_links(distribution_.links());
+    add_links(row_links_);
+    if (exterior_) add_links(exterior_->links());
     const auto age = [](const std::string& line) {
         const auto at = line.find("since cycle ");
         return at == std::string::npos ? 0ULL : std::stoull(line.substr(at + 12));
@@ -208,6 +237,9 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     RunResult result;
     const PictureSettings& settings = environment_.context.settings;
     run_phase(Phase::load, result);
+    // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
+    result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
+    for (const auto& link : array_.links()) link->reset_statistics();
     if (settings.shadows != Shadows::per_hit) {
         for (const auto& cell : array_.cells()) reset_shadow_bits(cell->cell().store());
     }
@@ -223,14 +255,14 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
         if (going() && settings.shadows == Shadows::precast) run_phase(Phase::precast, result);
         if (going()) run_phase(Phase::trace, result);
     }
-    if (going()) check_conservation(result);
+    if (going()) check_conservation();
     collect(result);
     if (going() && result.overflowed > 0) result.verdict = Verdict::capacity;
     result.picture = picture_;
     return result;
 }
 
-void Machine::check_conservation(const RunResult&) const {
+void Machine::check_conservation() const {
     const Counters& c = environment_.counters;
     const bool rays = c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed;
     const bool answers = c.answers_sent == c.answers_delivered;
@@ -261,6 +293,7 @@ void Machine::collect(RunResult& result) const {
         result.edges += store.edges.size();
         result.overflowed += store.overflowed;
         result.ray_store_peak = std::max(result.ray_store_peak, cell->cell().ray_store().peak());
+        result.counters.slot_cycles += cell->cell().ray_store().waiting_cycles(scheduler_.now());
     }
     if (result.trace_cycles > 0) {
         result.ray_store_mean = double(result.counters.slot_cycles) /
@@ -270,7 +303,24 @@ void Machine::collect(RunResult& result) const {
     collect_buffers(result);
 }
 
+/// Peak and mean of one class over the array's links since their last reset.
+RunResult::BufferUse Machine::buffer_use(const char* class_name, int index, Cycle cycles) const {
+    RunResult::BufferUse use;
+    use.name = class_name;
+    double occupied = 0;
+    double buffers = 0;
+    for (const auto& link : array_.links()) {
+        const Link::ClassStatistics s = link->statistics(index);
+        use.peak = std::max(use.peak, s.peak);
+        occupied += double(s.occupied_cycles);
+        buffers += s.sent > 0 ? 1 : 0;  // a class that a link never carries has no buffer there
+    }
+    if (buffers > 0 && cycles > 0) use.mean = occupied / (buffers * double(cycles));
+    return use;
+}
+
 void Machine::collect_buffers(RunResult& result) const {
+    if (environment_.phase == Phase::load) return;
     static const char* const quadrants[] = {"ray_east_south", "ray_west_south", "ray_east_north",
                                             "ray_west_north", "answer"};
     static const char* const halves[] = {"ray_east", "ray_west", "answer"};
@@ -282,19 +332,8 @@ void Machine::collect_buffers(RunResult& result) const {
                                : networks == Networks::split  ? split
                                                               : shared;
     for (int index = 0; index < environment_.classes.count; ++index) {
-        RunResult::BufferUse use;
-        use.name = names[index];
-        double occupied = 0;
-        double buffers = 0;
-        for (const auto& link : array_.links()) {
-            const Link::ClassStatistics& s = link->statistics(index);
-            use.peak = std::max(use.peak, s.peak);
-            occupied += double(s.occupied_cycles);
-            buffers += s.sent > 0 ? 1 : 0;  // a class that a link never carries has no buffer there
-        }
-        const double cycles = double(scheduler_.now());
-        if (buffers > 0 && cycles > 0) use.mean = occupied / (buffers * cycles);
-        result.buffers.push_back(use);
+        result.buffers.push_back(
+            buffer_use(names[index], index, result.precast_cycles + result.trace_cycles));
     }
 }
 

@@ -76,10 +76,11 @@ class Machine : public sc_core::sc_module {
   private:
     void bind_pipeline();
     void run_phase(Phase phase, RunResult& result);
-    bool phase_complete(const RunResult& result) const;
+    bool phase_complete() const;
     void judge(RunResult& result);
-    void check_conservation(const RunResult& result) const;
+    void check_conservation() const;
     void collect(RunResult& result) const;
+    RunResult::BufferUse buffer_use(const char* class_name, int index, Cycle cycles) const;
     void collect_buffers(RunResult& result) const;
     std::vector<std::string> stuck_report() const;
     static bool watch(void* self, Cycle now);

@@ -13,7 +13,8 @@ namespace {
 
 class Reader {
   public:
-    Reader(const std::string& path, const CLI::App& app) : path_(path), app_(app) {}
+    Reader(const std::string& path, const CLI::App& app, const CLI::App* other)
+        : path_(path), app_(app), other_(other) {}
 
     std::vector<std::string> arguments() {
         for (const auto& [key, node] : parse()) option(std::string(key.str()), node);
@@ -43,6 +44,7 @@ class Reader {
     void option(const std::string& key, const toml::node& node) {
         const bool word = key.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos;
         const CLI::Option* known = word ? app_.get_option_no_throw("--" + key) : nullptr;
+        if (!known && word && other_ && other_->get_option_no_throw("--" + key)) return;
         if (!known || key == "config" || key == "help") {
             fail(node.source(), "unknown key '" + printable(key) + "'; keys are the options of '" +
                                     app_.get_name() + "' without their dashes, see --help");
@@ -83,13 +85,15 @@ class Reader {
 
     std::string path_;
     const CLI::App& app_;
+    const CLI::App* other_;
     std::vector<std::string> arguments_;
 };
 
 }  // namespace
 
-std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app) {
-    return Reader(path, app).arguments();
+std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app,
+                                             const CLI::App* other) {
+    return Reader(path, app, other).arguments();
 }
 
 std::string to_toml(const nlohmann::ordered_json& values) {

@@ -8,9 +8,11 @@
 
 namespace raycell {
 
-/// Turns a configuration file into arguments for `app`. Throws UsageError naming file, line and key for what
-/// is not TOML, for keys that the command doesn't know and for values of the wrong kind.
-std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app);
+/// Turns a configuration file into arguments for `app`. Keys that only `other` knows are passed over, if it
+/// is given: a file that `render` wrote serves `truth` too. Throws UsageError naming file, line and key for
+/// what is not TOML, for keys that the command doesn't know and for values of the wrong kind.
+std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app,
+                                             const CLI::App* other = nullptr);
 
 /// The effective options as a configuration file that reproduces the run.
 std::string to_toml(const nlohmann::ordered_json& values);

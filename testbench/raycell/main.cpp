@@ -44,7 +44,7 @@ std::vector<std::string> with_configuration(CLI::App& program, std::vector<std::
                                             const CLI::App& command) {
     const std::string path = configuration_named(words);
     if (path.empty()) return words;
-    const auto from_file = arguments_from_file(path, command);
+    const auto from_file = arguments_from_file(path, command, program.get_subcommand("render"));
     std::vector<std::string> alone = {words.front()};
     alone.insert(alone.end(), from_file.begin(), from_file.end());
     try {

@@ -41,13 +41,25 @@ std::uint64_t memory_bytes() {
     return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
 }
 
+/// What a process can still get, the page cache included; free pages alone where the system doesn't say.
+double available_bytes() {
+    std::ifstream file("/proc/meminfo");
+    std::string key;
+    double kilobytes = 0;
+    std::string unit;
+    while (file >> key >> kilobytes >> unit) {
+        if (key == "MemAvailable:") return kilobytes * 1024;
+    }
+    return double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+}
+
 /// A machine that can't be held in memory is refused before it is built.
 void check_memory(const RenderOptions& options) {
     constexpr double bytes_per_cell_module = 10e3;
     constexpr double bytes_per_untimed_cell = 200;
     const double each = options.engine == Engine::timed ? bytes_per_cell_module : bytes_per_untimed_cell;
     const double needed = each * options.picture.width * options.picture.height;
-    const double there = double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+    const double there = available_bytes();
     if (needed > there) {
         throw UsageError("--cells: " + std::to_string(std::llround(needed / 1e9)) +
                          " GB would be needed for so many cells, " +
@@ -89,7 +101,7 @@ std::string cells_csv(Array& array, int width, int height) {
                 const Link& link = *array.links()[i++];
                 Row& row = rows[std::size_t(to_y) * std::size_t(width) + std::size_t(to_x)];
                 for (int index = 0; index < link.classes(); ++index) {
-                    const bool answers = index + 1 == link.classes();
+                    const bool answers = link.classes() > 1 && index + 1 == link.classes();
                     int& peak = answers ? row.answers : row.rays;
                     peak = std::max(peak, link.statistics(index).peak);
                 }

@@ -68,7 +68,7 @@ Command add_truth_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand("truth", "Renders a scene exactly, without the machine");
     auto table = std::make_shared<OptionTable>(*app);
     app->add_option("--config",
-                    "options from a file as 'render' writes them; the command line has precedence")
+                    "options from a file that truth or render wrote; the command line has precedence")
         ->type_name("FILE");
     add_scene_options(*table, *options);
     table->flag("clip", options->clip, "clip the scene to the cube");

@@ -23,7 +23,7 @@ TEST(Link, ShowsAMessageAfterItsLinkCyclesAndNotBefore) {
     Link link(bench.scheduler, 1, 1);
     std::vector<Cycle> seen;
     std::vector<Cycle> woken;
-    Actor sender("sender", bench.scheduler, [&](Cycle now) {
+    Actor sender("sender", bench.scheduler, [&](Cycle) {
         link.send(0, bench.message(1), 5);
         return never;
     });

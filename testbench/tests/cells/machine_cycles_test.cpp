@@ -78,9 +78,10 @@ TEST(TimedCycles, APrecastRayTakesAWalkStepAndItsLinkCyclesPerHop) {
     row.settings.shadows = Shadows::precast;
     const RunResult result = row.run();
     ASSERT_EQ(result.verdict, Verdict::completed);
-    // In cell 0: from cycle 1, walk 4 and run 2; the link 11. Six cells of 4 + 11; the eighth ends it,
+    // Its address names a voxel in 10 bits instead of a slot in 4: 225 bits, 12 cycles on the link.
+    // In cell 0: from cycle 1, walk 4 and run 2; the link 12. Six cells of 4 + 12; the eighth ends it,
     // silently, after 4.
-    EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 11 + 6 * 15 + 4));
+    EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 12 + 6 * 16 + 4));
     EXPECT_EQ(result.counters.rays_silent, 1u);
     EXPECT_EQ(result.counters.rays.precast, 1u);
     // A hit that waits for nothing: test 22, set-up 48, shading 26, without a slot.
@@ -91,9 +92,9 @@ TEST(TimedCycles, APrecastRayTakesAWalkStepAndItsLinkCyclesPerHop) {
 TEST(TimedCycles, NarrowLinksTakeLonger) {
     Row row(8);
     row.settings.shadows = Shadows::precast;
-    row.machine.link_bits = 7;  // 219 bits: 32 cycles
+    row.machine.link_bits = 7;  // 225 bits: 33 cycles
     const RunResult result = row.run();
-    EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 32 + 6 * (4 + 32) + 4));
+    EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 33 + 6 * (4 + 33) + 4));
 }
 
 /// A polygon over the whole row, no source.
@@ -109,15 +110,15 @@ struct Loading : Row {
         const int columns = 2 * int(std::ceil(std::log2(settings.width)));
         const int setup = 4, features = 4;  // link cycles of 69 and 76 bits
         // Geometry, from cycle 1: set-up mark ready in 2 and sent; features wait for the wires until 6,
-        // arrive at 10; the polygon, taken up in 7, needs 1 + 40 and leaves in 48. 4 corners of 3 words and
-        // the features: 316 bits, 16 cycles.
-        const int polygon_arrives = 2 + setup + 1 + 1 + 40 + 16;
-        EXPECT_EQ(polygon_arrives, 64);
+        // arrive at 10; the polygon, taken up in 7, needs 1 + 40 and leaves in 48. Type 3, id 20,
+        // plane 102, normals 180 and 4 corners of 3 words: 545 bits, 28 cycles.
+        const int polygon_arrives = 2 + setup + 1 + 1 + 40 + 28;
+        EXPECT_EQ(polygon_arrives, 76);
         (void)features;
-        // Precomputation 20; a trapeze is 3 + 20 + 240 + 82 + 180 + 243 = 768 bits, 39 cycles.
-        const int trapeze_arrives = polygon_arrives + 20 + 39;
-        // The row cuts its span in 8; it is 3 + 20 + columns + 120 + 82 + 180 + 243 bits.
-        const int span_link = (648 + columns + 19) / 20;
+        // Precomputation 20; a trapeze is 3 + 20 + 240 + 102 + 180 + 243 = 788 bits, 40 cycles.
+        const int trapeze_arrives = polygon_arrives + 20 + 40;
+        // The row cuts its span in 8; it is 3 + 20 + columns + 120 + 102 + 180 + 243 bits.
+        const int span_link = (668 + columns + 19) / 20;
         const int span_arrives = trapeze_arrives + 8 + span_link;
         // Each cell makes its voxel in 12 and passes the span on; the last one drops it.
         const int span_done = span_arrives + (settings.width - 1) * (12 + span_link) + 12;
