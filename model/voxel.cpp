@@ -192,7 +192,7 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
                     crossing[std::size_t(i)].piece = before.pieces;
                     store.edges.push_back(crossing[std::size_t(i)]);
                 }
-                before.edge_count = before.edge_count + std::uint32_t(crossings);
+                before.edge_count += std::uint32_t(crossings);
                 ++before.pieces;
             }
         }
@@ -229,7 +229,7 @@ VoxelBits voxel_bits(const PictureSettings& settings, int word_bits, std::size_t
     // Two slopes, an offset and which axis they are for.
     if (settings.hit >= HitTest::plane) bits.base += 3 * word_bits + 2;
     if (settings.hit == HitTest::mask) bits.base += 64 + 4 * 5;  // coverage and its window
-    if (settings.hit == HitTest::edge) bits.base += 4;           // how many edges follow
+    if (settings.hit == HitTest::edge) bits.base += 8;           // how many edges follow
     if (settings.normals == Normals::linear) bits.base += 6 * word_bits;
     if (settings.shadows != Shadows::per_hit) {
         bits.base += int(sources) * (settings.shadows == Shadows::memo ? 2 : 1);
