@@ -243,7 +243,7 @@ TEST(Voxels, BitsGrowFromRungToRungAndWithTheWord) {
     EXPECT_EQ(bits(HitTest::interval).base, bits(HitTest::depth).base + 10);
     EXPECT_EQ(bits(HitTest::plane).base, bits(HitTest::interval).base + 62);
     EXPECT_GE(bits(HitTest::mask).base, bits(HitTest::plane).base + 64);
-    EXPECT_EQ(bits(HitTest::edge).base, bits(HitTest::plane).base + 4);
+    EXPECT_EQ(bits(HitTest::edge).base, bits(HitTest::plane).base + 8);
     EXPECT_EQ(bits(HitTest::edge).per_edge, 62);
     EXPECT_EQ(bits(HitTest::mask).per_edge, 0);
     // The paper's voxel has 40 bytes; its own kind of voxel must not need more.
