@@ -199,8 +199,10 @@ bool Machine::buffers_empty() const {
 /// would be the model's fault, not the machine's.
 bool Machine::kick_finds_work() {
     const std::uint64_t before = array_.schedule_hash();
-    scheduler_.skip(Cycle(1) << 40);  // past every transfer, cost and back-off
+    const Cycle stopped = scheduler_.now();
+    scheduler_.set_now(stopped + (Cycle(1) << 40));  // past every transfer, cost and back-off
     for (const auto& cell : array_.cells()) cell->cell().step(scheduler_.now());
+    scheduler_.set_now(stopped);
     return array_.schedule_hash() != before;
 }
 

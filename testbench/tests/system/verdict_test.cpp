@@ -43,6 +43,9 @@ TEST(Verdict, OneNetworkForAllDeadlocksOnMirrors) {
     const Json report =
         expect_verdict(workshop, "facing_mirrors.nff", {"--networks", "shared"}, "deadlock", 3);
     EXPECT_GT(report.at("deadlock").at("report").size(), 10u);
+    EXPECT_LT(report.at("cycles").at("trace").get<double>(), 1e7);  // to where it stopped, no farther
+    EXPECT_GT(report.at("ray_store").at("mean").get<double>(), 0);  // what is stuck counts
+    EXPECT_LE(report.at("ray_store").at("mean").get<double>(), report.at("ray_store").at("peak").get<double>());
     for (const auto& line : report.at("deadlock").at("report")) {
         EXPECT_TRUE(contains(line, "cell (") || contains(line, "link ")) << line;
     }
