@@ -91,23 +91,15 @@ std::string cells_csv(Array& array, int width, int height) {
         std::uint64_t busy = 0;
     };
     std::vector<Row> rows(std::size_t(width) * std::size_t(height));
-    std::size_t i = 0;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            for (const Side side : {Side::east, Side::south, Side::west, Side::north}) {
-                const int to_x = x + step_x(side);
-                const int to_y = y + step_y(side);
-                if (to_x < 0 || to_x >= width || to_y < 0 || to_y >= height) continue;
-                const Link& link = *array.links()[i++];
-                Row& row = rows[std::size_t(to_y) * std::size_t(width) + std::size_t(to_x)];
-                for (int index = 0; index < link.classes(); ++index) {
-                    const bool answers = link.classes() > 1 && index + 1 == link.classes();
-                    int& peak = answers ? row.answers : row.rays;
-                    peak = std::max(peak, link.statistics(index).peak);
-                }
-                row.busy += link.busy_cycles();
-            }
+    for (std::size_t i = 0; i < array.links().size(); ++i) {
+        const Link& link = *array.links()[i];
+        Row& row = rows[array.sink_of(i)];
+        for (int index = 0; index < link.classes(); ++index) {
+            const bool answers = link.classes() > 1 && index + 1 == link.classes();
+            int& peak = answers ? row.answers : row.rays;
+            peak = std::max(peak, link.statistics(index).peak);
         }
+        row.busy += link.busy_cycles();
     }
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
