@@ -116,9 +116,9 @@ void Cell::start_traversal(Cycle now) {
         if (!packet || packet->stage != RayPacket::Stage::untested) continue;
         packet->visit = visit_cell(store_, packet->ray, env_.context);
         packet->stage = RayPacket::Stage::in_test;
-        const std::uint32_t cycles =
-            packet->ray.outside ? env_.costs().walk_step
-                                : visit_cycles(packet->visit, env_.context.settings.hit, env_.costs());
+        const std::uint32_t cycles = packet->ray.outside
+                                         ? env_.costs().walk_step
+                                         : visit_cycles(packet->visit, env_.settings, env_.costs());
         env_.counters.traversal_cycles += cycles;
         traversal_ = {packet, now + cycles};
         next_test_ = place + 1;
@@ -241,11 +241,11 @@ bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
             if (beyond_face(env_.context, face_of_depth(ray)) == Beyond::nothing) {
                 const bool ended =
                     end_ray(packet, place, is_shadow(ray.kind) ? Answer::Kind::lit : Answer::Kind::intensity,
-                            env_.context.scene.background, now);
+                            env_.context.background, now);
                 env_.counters.rays.lost += ended;
                 return ended;
             }
-            start_outside(packet.ray, packet.visit.t_leave);
+            start_outside(packet.ray, packet.visit.t_leave, env_.context.arithmetic);
             packet.stage = RayPacket::Stage::untested;
             return true;
     }
@@ -262,7 +262,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
         const Face face = ray.outside ? face_of_depth(ray) : face_of(side);
         if (beyond_face(env_.context, face) == Beyond::nothing) {
             const Answer::Kind kind = is_shadow(ray.kind) ? Answer::Kind::lit : Answer::Kind::intensity;
-            const bool ended = end_ray(packet, place, kind, env_.context.scene.background, now);
+            const bool ended = end_ray(packet, place, kind, env_.context.background, now);
             env_.counters.rays.lost += ended;
             return ended;
         }
@@ -276,7 +276,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
         ++env_.counters.rays.exterior;
         ++env_.counters.rays.return_hops;  // the border link, counted with its way back
     } else {
-        cross(ray, packet.visit.crossing);
+        cross(ray, packet.visit.crossing, env_.context.arithmetic);
         packet.stage = RayPacket::Stage::untested;
         ++env_.counters.rays.ray_hops;
     }

@@ -39,8 +39,9 @@ void Cell::take_load(LoadItem& item) {
     switch (item.kind) {
         case LoadItem::Kind::span:
             if (item.span.x != x_) break;  // not there yet
-            store_voxel(store_, item.span, env_.context.settings, env_.context.scene.frame.level());
-            if (item.span.last != x_) advance(item.span);
+            store_voxel(store_, item.span, env_.context.settings, env_.context.scene.frame.level(),
+                        env_.context.arithmetic);
+            if (item.span.last != x_) advance(item.span, env_.context.arithmetic);
             break;
         case LoadItem::Kind::end_of_scene:
             ++env_.counters.cells_loaded;

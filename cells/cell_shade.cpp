@@ -209,7 +209,7 @@ void Cell::begin_shade(std::uint32_t index, Cycle now) {
     slot.result = shade_hit(env_.context, slot.setup, store_.voxels[hit.voxel].object, slot.lit,
                             slot.colour[0], slot.colour[1]);
     slot.state = Slot::State::in_shading;
-    const std::uint32_t cycles = shade_cycles(slot.lit & slot.setup.facing, env_.costs());
+    const std::uint32_t cycles = shade_cycles(env_.context, slot.lit & slot.setup.facing, env_.costs());
     shading_ = {Shading::Job::shade, index, now + cycles, nullptr, dvec3(0)};
     env_.counters.shading_cycles += cycles;
     want(shading_.done);
@@ -238,8 +238,8 @@ void Cell::begin_direct(RayPacket& packet, Cycle now) {
         record_first_hit(env_.picture.pixels[std::size_t(packet.ray.id >> 32)], setup, voxel.polygon);
     }
     const std::uint64_t lit = env_.context.settings.shadows == Shadows::per_hit ? 0 : store_.lit[hit.voxel];
-    const std::uint32_t cycles =
-        setup_cycles(env_.context, setup, env_.costs()) + shade_cycles(lit & setup.facing, env_.costs());
+    const std::uint32_t cycles = setup_cycles(env_.context, setup, env_.costs()) +
+                                 shade_cycles(env_.context, lit & setup.facing, env_.costs());
     shading_ = {Shading::Job::direct, 0, now + cycles, &packet,
                 shade_hit(env_.context, setup, voxel.object, lit, dvec3(0), dvec3(0))};
     env_.counters.shading_cycles += cycles;

@@ -9,7 +9,7 @@ int Environment::load_bits(const LoadItem& item) const {
         case LoadItem::Kind::features:
             return bits.features;
         case LoadItem::Kind::polygon:
-            return int(item.polygon.vertices.size()) * 3 * machine.word_bits + bits.polygon;
+            return int(item.polygon.vertices.size()) * bits.vertex + bits.polygon;
         case LoadItem::Kind::trapeze:
             return bits.trapeze;
         case LoadItem::Kind::span:

@@ -58,8 +58,8 @@ struct Environment {
                 const MachineSettings& machine_settings, Scheduler& s, Picture& p)
         : settings(picture_settings),
           machine(machine_settings),
-          context{scene, settings},
-          bits(message_bits(settings, machine)),
+          context(scene, settings),
+          bits(message_bits(settings, machine, context.arithmetic.formats())),
           classes(buffer_classes(machine.networks)),
           scheduler(s),
           picture(p) {}

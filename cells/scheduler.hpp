@@ -47,7 +47,8 @@ class Scheduler : public sc_core::sc_module {
         watch_argument_ = argument;
     }
 
-    /// Puts the time of a run that has stopped, without running anybody: for looking at it as it would be later.
+    /// Puts the time of a run that has stopped, without running anybody: for looking at it as it would be
+    /// later.
     void set_now(Cycle now) { now_ = now; }
 
     std::uint64_t activations() const { return activations_; }

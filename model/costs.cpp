@@ -20,6 +20,15 @@ std::vector<std::pair<std::string, std::uint32_t CostTable::*>> CostTable::entri
             {"refract", &CostTable::refract},
             {"local_intensity", &CostTable::local_intensity},
             {"per_lit_source", &CostTable::per_lit_source},
+            {"reciprocal_newton", &CostTable::reciprocal_newton},
+            {"reciprocal_table", &CostTable::reciprocal_table},
+            {"reciprocal_rounded", &CostTable::reciprocal_rounded},
+            {"root_newton", &CostTable::root_newton},
+            {"root_table", &CostTable::root_table},
+            {"root_rounded", &CostTable::root_rounded},
+            {"power_tables", &CostTable::power_tables},
+            {"power_schlick", &CostTable::power_schlick},
+            {"power_rounded", &CostTable::power_rounded},
             {"route_return", &CostTable::route_return},
             {"backoff", &CostTable::backoff},
             {"load_voxel", &CostTable::load_voxel},
@@ -28,6 +37,27 @@ std::vector<std::pair<std::string, std::uint32_t CostTable::*>> CostTable::entri
             {"precomputation_trapeze", &CostTable::precomputation_trapeze},
             {"distribution_span", &CostTable::distribution_span},
             {"distribution_pass", &CostTable::distribution_pass}};
+}
+
+namespace {
+
+std::uint32_t by_method(Iteration method, std::uint32_t newton, std::uint32_t table, std::uint32_t rounded) {
+    return method == Iteration::newton ? newton : method == Iteration::table ? table : rounded;
+}
+
+}  // namespace
+
+std::uint32_t CostTable::reciprocal(const OperatorSettings& operators) const {
+    return by_method(operators.reciprocal, reciprocal_newton, reciprocal_table, reciprocal_rounded);
+}
+
+std::uint32_t CostTable::root(const OperatorSettings& operators) const {
+    return by_method(operators.root, root_newton, root_table, root_rounded);
+}
+
+std::uint32_t CostTable::power(const OperatorSettings& operators) const {
+    if (operators.power == PowerMethod::schlick) return power_schlick + reciprocal(operators);
+    return operators.power == PowerMethod::tables ? power_tables : power_rounded;
 }
 
 void CostTable::set(const std::string& assignment) {

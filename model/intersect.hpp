@@ -11,7 +11,7 @@ namespace raycell {
 /// Distance along the ray at which it hits the voxel within the cell, if it does before t_end.
 /// A fresh ray may not hit behind its origin; others may by a hair, so that no hit falls between two cells.
 std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, const Ray& ray, double t_end,
-                                HitTest test, double level);
+                                HitTest test, double level, const Arithmetic& arithmetic);
 
 struct CellHit {
     double t = 0;
@@ -28,6 +28,7 @@ struct Comparisons {
 /// The nearest hit in a cell; equal distances go to the lower polygon id. For shadow rays any hit will do,
 /// but the nearest is found all the same: the cell has one comparison unit for both.
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
-                                       double level, Comparisons* comparisons = nullptr);
+                                       double level, const Arithmetic& arithmetic,
+                                       Comparisons* comparisons = nullptr);
 
 }  // namespace raycell

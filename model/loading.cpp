@@ -1,32 +1,65 @@
 #include "model/loading.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace raycell {
 
-bool clip_to_cube(Polygon& polygon, const Box& cube) {
+namespace {
+
+bool fits(const Format& f, const NormalField& field) {
+    double largest = 0;
+    for (const dvec3& v : {field.base, field.du, field.dv}) {
+        largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    }
+    return largest < f.most();
+}
+
+/// Rounds a polygon to loading words.
+void hold(Polygon& polygon, const Arithmetic& arithmetic) {
+    const Format& word = arithmetic.formats().loading;
+    dvec3 centre{0, 0, 0};
+    for (dvec3& v : polygon.vertices) {
+        v = arithmetic.hold(word, v);
+        centre += v / double(polygon.vertices.size());
+    }
+    polygon.slack = polygon.slack * 2 + 4 * word.step();
+    polygon.plane = hold_plane(polygon.plane, polygon.drop, centre, word, word);
+    const dvec2 middle = project(centre, polygon.drop);
+    if (!fits(word, polygon.normal)) polygon.normal = {polygon.normal.at(middle), {0, 0, 0}, {0, 0, 0}};
+    polygon.normal = hold_field(polygon.normal, middle, word, word);
+}
+
+}  // namespace
+
+bool clip_to_cube(Polygon& polygon, const Box& cube, const Arithmetic& arithmetic) {
     polygon.vertices = clip_to_box(std::move(polygon.vertices), cube);
-    return !polygon.vertices.empty() && glm::length(newell(polygon.vertices)) > 0;
+    if (polygon.vertices.empty()) return false;
+    if (!arithmetic.exact()) hold(polygon, arithmetic);
+    return glm::length(newell(polygon.vertices)) > 0;
 }
 
 std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings& settings,
-                                  LoadCounts* counts) {
+                                  const Arithmetic& arithmetic, LoadCounts* counts) {
     const Frame& frame = scene.frame;
     std::vector<CellStore> cells(std::size_t(frame.width) * std::size_t(frame.height));
     LoadCounts total;
     const bool gouraud = settings.display == Display::gouraud;
     for (Polygon polygon : scene.polygons) {
-        if (!clip_to_cube(polygon, frame.cube())) continue;
+        if (!clip_to_cube(polygon, frame.cube(), arithmetic)) continue;
         ++total.polygons;
-        for (const Trapeze& trapeze : precompute(polygon)) {
+        for (const Trapeze& trapeze : precompute(polygon, arithmetic)) {
             ++total.trapezes;
             CornerIntensities shades;
             if (gouraud) shades = shade_corners(trapeze, scene);
             for (int row = trapeze.first_row(frame.height); row < frame.height; ++row) {
-                if (auto span = cut_span(trapeze, row, frame.width, gouraud ? &shades : nullptr)) {
+                if (auto span =
+                        cut_span(trapeze, row, frame.width, arithmetic, gouraud ? &shades : nullptr)) {
                     ++total.spans;
-                    for (;; advance(*span)) {
+                    for (;; advance(*span, arithmetic)) {
                         const std::size_t cell =
                             std::size_t(row) * std::size_t(frame.width) + std::size_t(span->x);
-                        store_voxel(cells[cell], *span, settings, frame.level());
+                        store_voxel(cells[cell], *span, settings, frame.level(), arithmetic);
                         if (span->x == span->last) break;
                     }
                 }

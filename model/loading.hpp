@@ -3,13 +3,16 @@
 
 #include <vector>
 
+#include "model/arithmetic.hpp"
 #include "model/placement.hpp"
 #include "model/voxel.hpp"
 
 namespace raycell {
 
 /// Cuts a polygon to the cube; false if nothing is left. Plane and normals stay those of the whole polygon.
-bool clip_to_cube(Polygon& polygon, const Box& cube);
+/// In fixed arithmetic the result is what the geometry stage sends: loading words. A polygon whose normals
+/// turn too fast for them gets the normal of its middle.
+bool clip_to_cube(Polygon& polygon, const Box& cube, const Arithmetic& arithmetic);
 
 /// What loading handled, for the statistics.
 struct LoadCounts {
@@ -22,7 +25,7 @@ struct LoadCounts {
 
 /// The loaded array, row-major. Throws nothing: what does not fit a cell is counted in it.
 std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings& settings,
-                                  LoadCounts* counts = nullptr);
+                                  const Arithmetic& arithmetic, LoadCounts* counts = nullptr);
 
 /// Gives every voxel its shadow bits: lit until proved otherwise, nothing known.
 void reset_shadow_bits(CellStore& store);

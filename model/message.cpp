@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "model/voxel.hpp"
+
 namespace raycell {
 namespace {
 
@@ -25,8 +27,9 @@ Answer answer_to(const Ray& ray, Answer::Kind kind) {
     return answer;
 }
 
-MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine) {
-    const int word = machine.word_bits;
+MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
+                         const Formats& formats) {
+    const int word = formats.word_bits;
     constexpr int type = 3;
     constexpr int polygon_id = 20;
     constexpr int generation = 6;
@@ -38,24 +41,29 @@ MessageBits message_bits(const PictureSettings& picture, const MachineSettings& 
     if (picture.shadows != Shadows::per_hit) slot = std::max(slot, voxel_index);
     const int address = home + slot + child;
     MessageBits bits;
-    // Position 3 words, direction 3, reciprocals of dx and dy 2, weight 1; flags: fresh, outside, side left.
-    bits.ray = type + 9 * word + polygon_id + generation + address + 3;
-    bits.shadow_ray = type + 9 * word + polygon_id + address + 3;  // its reach stands for the weight
+    // Place, direction, the reciprocals of dx and dy (mantissas; their signs are the direction's).
+    const int place = 2 * word + formats.depth_word_bits();
+    const int way = place + 3 * word + 2 * (word + Formats::exponent_bits);
+    // A weight, or for a shadow ray the distance to its source; flags: fresh, outside, side left.
+    bits.ray = type + way + word + polygon_id + generation + address + 3;
+    bits.shadow_ray = type + way + word + polygon_id + address + 3;
     bits.intensity = type + 3 * word + address;
     bits.verdict = type + address;
+    const int loading = formats.loading.bits();
     const int columns = 2 * bits_for(picture.width);
-    const int gouraud = picture.display == Display::gouraud ? 6 * word : 0;
-    const int normals = 9 * word;
-    const int plane = 5 * word + 2;  // with its slack
-    const int edges = 4 * 3 * word + 3;
-    // X1, Xr, near and far with their increments and bounds, plane, normal field, edges (paper, section 3.1).
-    bits.span = type + polygon_id + columns + 6 * word + plane + normals + edges + gouraud;
-    bits.trapeze = type + polygon_id + 4 * 3 * word + plane + normals + edges + 2 * gouraud;
-    bits.polygon = type + polygon_id + plane + normals;  // and its vertices
-    bits.features = type + 3 * 8 + 3 * 8 + 12 + 12 + 1;
+    const int gouraud = picture.display == Display::gouraud ? 6 * loading : 0;
+    const int normals = 9 * loading;
+    const int plane = 4 * loading + 3;  // two slopes, offset, slack; dominant axis and its sign
+    const int edges = 4 * 3 * loading + 3;
+    // X1, Xr, near and far with their increment and bounds, plane, normal field, edges (paper, section 3.1).
+    bits.span = type + polygon_id + columns + 5 * loading + plane + normals + edges + gouraud;
+    bits.trapeze = type + polygon_id + 4 * 3 * loading + plane + normals + edges + 2 * gouraud;
+    bits.polygon = type + polygon_id + plane + normals;
+    bits.vertex = 3 * loading;
+    bits.features = type + feature_bits(formats);
     bits.end_of_scene = type;
-    bits.viewer = type + 3 * word + 6;
-    bits.source = 6 * word;
+    bits.viewer = type + formats.place_bits() + 6;
+    bits.source = formats.place_bits() + 3 * word;
     return bits;
 }
 

@@ -23,7 +23,7 @@ struct Answer {
 };
 Answer answer_to(const Ray& ray, Answer::Kind kind);
 
-/// Bits of the messages, for an array of width x height cells and M slots. A word is settings.word_bits.
+/// Bits of the messages, for an array of width x height cells and M slots; docs/cell.md has the table.
 struct MessageBits {
     int ray = 0;
     int shadow_ray = 0;  ///< a ray with its distance to the source
@@ -31,14 +31,16 @@ struct MessageBits {
     int verdict = 0;  ///< also the postponed notice
     int span = 0;
     int trapeze = 0;
-    int polygon = 0;  ///< without its vertices, 3 words each
+    int polygon = 0;  ///< without its vertices
+    int vertex = 0;
     int features = 0;
     int end_of_scene = 0;
     int setup(std::size_t sources) const { return viewer + int(sources) * source; }
     int viewer = 0;
     int source = 0;
 };
-MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine);
+MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
+                         const Formats& formats);
 
 /// Cycles that `bits` take over a link of `link_bits`.
 constexpr int link_cycles(int bits, int link_bits) { return (bits + link_bits - 1) / link_bits; }

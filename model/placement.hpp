@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "model/arithmetic.hpp"
 #include "model/polygon.hpp"
 #include "model/scene.hpp"
 #include "model/settings.hpp"
@@ -38,6 +39,11 @@ struct Frame {
     };
     PrimaryRay primary_ray(double x, double y) const;
 };
+
+/// How far numbers reach in the frame's array.
+inline ArrayExtent extent_of(const Frame& frame) {
+    return {frame.width, frame.height, frame.depth, frame.level()};
+}
 
 /// A light source in cell coordinates.
 struct Source {

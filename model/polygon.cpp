@@ -4,8 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "model/arithmetic.hpp"
-
 namespace raycell {
 
 int dominant_axis(const dvec3& n) {
@@ -13,6 +11,36 @@ int dominant_axis(const dvec3& n) {
     // The screen's own axis wins ties, so that a 45 degree plane is stored as the cells see it.
     if (a.z >= a.x && a.z >= a.y) return 2;
     return a.x >= a.y ? 0 : 1;
+}
+
+namespace {
+
+dvec3 hold_each(const Format& f, const dvec3& v) { return {f.hold(v.x), f.hold(v.y), f.hold(v.z)}; }
+
+}  // namespace
+
+Plane hold_plane(const Plane& plane, int drop, const dvec3& anchor, const Format& slope,
+                 const Format& offset) {
+    const double scale = 1 / std::abs(plane.n[drop]);
+    Plane held;
+    held.n = hold_each(slope, plane.n * scale);
+    held.n[drop] = plane.n[drop] < 0 ? -1 : 1;
+    // The anchor may lie a little off the plane: only its other two coordinates are taken.
+    const Projection axes = projection(drop);
+    dvec3 on_plane = anchor;
+    on_plane[drop] =
+        (plane.c - plane.n[axes.u] * anchor[axes.u] - plane.n[axes.v] * anchor[axes.v]) / plane.n[drop];
+    held.c = offset.hold(glm::dot(held.n, on_plane));
+    return held;
+}
+
+NormalField hold_field(const NormalField& field, const dvec2& anchor, const Format& gradient,
+                       const Format& base) {
+    NormalField held;
+    held.du = hold_each(gradient, field.du);
+    held.dv = hold_each(gradient, field.dv);
+    held.base = hold_each(base, field.at(anchor) - anchor.x * held.du - anchor.y * held.dv);
+    return held;
 }
 
 dvec3 newell(const std::vector<dvec3>& vertices) {

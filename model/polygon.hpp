@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "model/fixed.hpp"
 #include "model/scene.hpp"
 
 namespace raycell {
@@ -55,6 +56,17 @@ struct Polygon {
     NormalField normal;
     std::vector<dvec3> vertices;  ///< cell coordinates, in order round the polygon, possibly concave
 };
+
+/// A plane in words: scaled so that n[drop] is 1 or -1, the other two slopes rounded to `slope`, then the
+/// offset taken from these rounded slopes at `anchor`, a point of the plane, and rounded to `offset`. Slopes
+/// and offset rounded apart would be two roundings of one plane: the tilt's error, times the way from the
+/// origin, would shift it.
+Plane hold_plane(const Plane& plane, int drop, const dvec3& anchor, const Format& slope,
+                 const Format& offset);
+
+/// A field of normals in words, in the same manner: right at `anchor` whatever the gradients lose.
+NormalField hold_field(const NormalField& field, const dvec2& anchor, const Format& gradient,
+                       const Format& base);
 
 /// Sum of the edges' cross products (Newell): twice the area, along the normal; sound for concave outlines.
 dvec3 newell(const std::vector<dvec3>& vertices);

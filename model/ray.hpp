@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "model/arithmetic.hpp"
 #include "model/polygon.hpp"
 
 namespace raycell {
@@ -46,20 +47,31 @@ struct Ray {
 };
 
 /// Sets direction and the reciprocals that go with it.
-void set_direction(Ray& ray, const dvec3& direction);
+void set_direction(Ray& ray, const dvec3& direction, const Arithmetic& arithmetic);
 
 /// Where the ray leaves the cell's column in x or y; t is infinite for an axial ray.
 struct Crossing {
     double t = std::numeric_limits<double>::infinity();
     Side side = Side::east;
 };
-Crossing next_crossing(const Ray& ray);
+Crossing next_crossing(const Ray& ray, const Arithmetic& arithmetic);
 
 /// Moves the ray over a crossing into the neighbouring cell's coordinates.
-void cross(Ray& ray, const Crossing& crossing);
+void cross(Ray& ray, const Crossing& crossing, const Arithmetic& arithmetic);
+
+/// Moves the ray on by t, within its cell.
+void move_along(Ray& ray, double t, const Arithmetic& arithmetic);
+
+/// The point at distance t, x and y relative to the cell.
+dvec3 point_at(const Ray& ray, double t, const Arithmetic& arithmetic);
+
+/// The depth at distance t.
+inline double depth_at(const Ray& ray, double t, const Arithmetic& arithmetic) {
+    return arithmetic.mac(arithmetic.formats().depth, ray.position.z, t, ray.direction.z);
+}
 
 /// The side that a ray which left through the front or the back takes next: straight on, an axial one goes
 /// east.
-Crossing border_crossing(const Ray& ray);
+Crossing border_crossing(const Ray& ray, const Arithmetic& arithmetic);
 
 }  // namespace raycell

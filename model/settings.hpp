@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/costs.hpp"
+#include "model/fixed.hpp"
 
 namespace raycell {
 
@@ -16,10 +17,19 @@ enum class ExteriorMode { none, host };
 enum class Networks { shared, split, quadrant, half };
 enum class Recovery { none, postpone };
 enum class Slots { reserved, free };
+enum class Numbers { fixed, exact };  ///< words of fixed length, or double precision
 enum class Engine { timed, untimed };
 enum class RunStage { load, trace };
 enum class Display { gouraud, phong };
 enum class ViewerMode { scene, infinity };
+
+/// The cell's arithmetic. The operators' methods count for their cycles in exact arithmetic too.
+struct NumberSettings {
+    Numbers arithmetic = Numbers::fixed;
+    int word_bits = 20;  ///< of messages, voxels and the ALU, 8..32
+    Rounding rounding = Rounding::nearest;
+    OperatorSettings operators;
+};
 
 /// What the picture depends on: scene placement, voxels, ray tree. Both engines use all of it.
 struct PictureSettings {
@@ -35,9 +45,11 @@ struct PictureSettings {
     ExteriorMode exterior = ExteriorMode::host;
     int max_depth = 4;              ///< generations after the primary ray, 0..62
     double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut
-    double normal_offset = 1e-8;    ///< cells, along the polygon's normal, to the side the new ray goes
-    double chord_error = 0.1;       ///< cells, largest gap between a curved object and its polygons
-    int voxel_capacity = 0;         ///< voxels a cell can hold; 0: unlimited
+    /// Cells, along the polygon's normal, to the side the new ray goes; negative: what suits the arithmetic.
+    double normal_offset = -1;
+    double chord_error = 0.1;  ///< cells, largest gap between a curved object and its polygons
+    int voxel_capacity = 0;    ///< voxels a cell can hold; 0: unlimited
+    NumberSettings numbers;
 };
 
 /// What only time depends on: invariant 2 says that none of it changes the picture.
@@ -48,7 +60,6 @@ struct MachineSettings {
     Recovery recovery = Recovery::postpone;
     Slots slots = Slots::reserved;
     int link_bits = 20;  ///< bits that cross a link per cycle, >= 1
-    int word_bits = 20;  ///< a word of a message, for link cycles and storage
     double clock_mhz = 20;
     std::int64_t max_cycles = 0;   ///< 0: no limit
     int exterior_processors = 64;  ///< >= 1

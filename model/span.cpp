@@ -35,6 +35,28 @@ void set_depth_functions(Span& span, double y_low, double y_high) {
     span.d_near = span.d_far = by_x;
 }
 
+/// Rounds what the row computed to loading words; the rest are sums of such already.
+void hold(Span& span, const Format& word) {
+    const double steep = word.most() / 4;
+    if (std::abs(span.d_near) > steep || std::abs(span.near) > steep || std::abs(span.far) > steep) {
+        // As for a plane without depth functions: the bounds hold.
+        span.near = span.z_min;
+        span.far = span.z_max;
+        span.d_near = span.d_far = 0;
+    }
+    for (double* value : {&span.near, &span.far, &span.d_near, &span.d_far, &span.z_min, &span.z_max}) {
+        *value = word.hold(*value);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        span.intensity[axis] = word.hold(span.intensity[axis]);
+        span.d_intensity[axis] = word.hold(span.d_intensity[axis]);
+        for (int i = 0; i < span.outline_count; ++i) {
+            double& place = span.outline[std::size_t(i)][axis];
+            place = word.hold(place);
+        }
+    }
+}
+
 /// Classic Gouraud: intensities on the left and right side at the middle of the row's part, linear between.
 void set_intensity(Span& span, const Trapeze& trapeze, const CornerIntensities& shades, double y) {
     double left = 1e300;
@@ -67,7 +89,7 @@ void set_intensity(Span& span, const Trapeze& trapeze, const CornerIntensities& 
 
 }  // namespace
 
-std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width,
+std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width, const Arithmetic& arithmetic,
                              const CornerIntensities* intensities) {
     if (trapeze.bottom + trapeze.slack.y < row || trapeze.top - trapeze.slack.y > row + 1)
         return std::nullopt;
@@ -108,10 +130,13 @@ std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width,
     if (intensities) {
         set_intensity(span, trapeze, *intensities, std::clamp(row + 0.5, low.y, high.y));
     }
+    if (!arithmetic.exact()) hold(span, arithmetic.formats().loading);
     return span;
 }
 
-void advance(Span& span) {
+void advance(Span& span, const Arithmetic& arithmetic) {
+    // Increments and what they are added to have the same last bit: nothing drifts along a row.
+    const Format& word = arithmetic.formats().loading;
     ++span.x;
     span.plane.c -= span.plane.n.x;
     if (span.drop != 0) {  // otherwise x is not among (u, v)
@@ -119,10 +144,10 @@ void advance(Span& span) {
         for (int i = 0; i < span.edge_count; ++i)
             span.edges[std::size_t(i)].c += span.edges[std::size_t(i)].a;
     }
-    span.near += span.d_near;
-    span.far += span.d_far;
+    span.near = arithmetic.hold(word, span.near + span.d_near);
+    span.far = arithmetic.hold(word, span.far + span.d_far);
     for (int i = 0; i < span.outline_count; ++i) span.outline[std::size_t(i)].x -= 1;
-    span.intensity += span.d_intensity;
+    span.intensity = arithmetic.hold(word, span.intensity + span.d_intensity);
 }
 
 CornerIntensities shade_corners(const Trapeze& trapeze, const CellScene& scene) {

@@ -41,11 +41,11 @@ struct Span {
 using CornerIntensities = std::array<dvec3, 4>;
 
 /// The part of a trapeze in row `row` of an array `width` cells wide; empty where it has none.
-std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width,
+std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width, const Arithmetic& arithmetic,
                              const CornerIntensities* intensities = nullptr);
 
 /// Moves a span one cell to the east.
-void advance(Span& span);
+void advance(Span& span, const Arithmetic& arithmetic);
 
 /// Shades the corners of a trapeze without shadows, seen along z: what Gouraud interpolates.
 CornerIntensities shade_corners(const Trapeze& trapeze, const CellScene& scene);

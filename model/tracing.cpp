@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
-
-#include "model/arithmetic.hpp"
+#include <sstream>
 
 namespace raycell {
 namespace {
@@ -24,11 +23,17 @@ std::uint64_t child_id(std::uint64_t parent, unsigned child) {
     return (parent & ~std::uint64_t(0xffffffffU)) | mix(std::uint32_t(parent) * 31 + child + 1);
 }
 
-/// Starts a ray off a polygon: a small way along its normal, to the side that the ray goes to.
+/// Starts a ray off a polygon: a small way along its normal, to the side that the ray goes to. (In words the
+/// normal is not unit but 1 along the polygon's dominant axis; the way is up to 1.7 times the offset.)
 void leave_surface(Ray& ray, const Context& context, const dvec3& local, const Voxel& voxel) {
-    const double along = arith::dot(voxel.plane.n, ray.direction);
-    const double offset = along < 0 ? -context.settings.normal_offset : context.settings.normal_offset;
-    ray.position = local + offset * voxel.plane.n;
+    const Arithmetic& arithmetic = context.arithmetic;
+    const Formats& formats = arithmetic.formats();
+    const dvec3& n = voxel.plane.n;
+    const double along = arithmetic.dot(formats.accumulator, n, ray.direction);
+    const double offset = along < 0 ? -context.normal_offset : context.normal_offset;
+    ray.position = {arithmetic.mac(formats.unit, local.x, offset, n.x),
+                    arithmetic.mac(formats.unit, local.y, offset, n.y),
+                    arithmetic.mac(formats.depth, local.z, offset, n.z)};
     ray.position.x = std::clamp(ray.position.x, 0.0, 1.0);
     ray.position.y = std::clamp(ray.position.y, 0.0, 1.0);
     ray.leaves = voxel.polygon;
@@ -49,56 +54,134 @@ Ray child_of(const Ray& parent, RayKind kind, unsigned child, int x, int y) {
 Ray secondary_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
                   const HitSetup& setup, RayKind kind, const dvec3& direction, double share, int x, int y) {
     Ray ray = child_of(parent, kind, kind == RayKind::reflected ? 0 : 1, x, y);
-    ray.weight = parent.weight * share;
-    set_direction(ray, direction);
+    ray.weight = context.arithmetic.product(context.arithmetic.formats().unit, parent.weight, share);
+    set_direction(ray, direction, context.arithmetic);
     leave_surface(ray, context, setup.local, store.voxels[hit.voxel]);
     return ray;
 }
 
 }  // namespace
 
+Material hold(const Material& material, const Arithmetic& arithmetic) {
+    if (arithmetic.exact()) return material;
+    const Formats& f = arithmetic.formats();
+    const auto unsigned_word = [](const Format& format, double x) { return std::max(format.hold(x), 0.0); };
+    Material held = material;
+    for (int channel = 0; channel < 3; ++channel) {
+        held.colour[channel] = unsigned_word(f.feature, material.colour[channel]);
+    }
+    held.diffuse = unsigned_word(f.feature, material.diffuse);
+    held.specular = unsigned_word(f.feature, material.specular);
+    held.transmit = unsigned_word(f.feature, material.transmit);
+    held.shine = arithmetic.hold_shine(material.shine);
+    held.ior = std::max(f.ior.hold(material.ior), f.ior.step());  // 0 would have no reciprocal
+    return held;
+}
+
+Context::Context(const CellScene& placed, const PictureSettings& picture_settings)
+    : scene(placed), settings(picture_settings), arithmetic(settings.numbers, extent_of(placed.frame)) {
+    const Formats& f = arithmetic.formats();
+    for (const Material& material : placed.objects) objects.push_back(hold(material, arithmetic));
+    for (const Source& source : placed.sources) {
+        sources.push_back(
+            {arithmetic.hold_place(source.position), arithmetic.hold(f.intensity, source.intensity)});
+    }
+    background = arithmetic.hold(f.intensity, placed.background);
+    eye = arithmetic.hold_place(placed.frame.eye);
+    depth = arithmetic.hold(f.depth, placed.frame.depth);
+    const double offset = settings.normal_offset;
+    normal_offset = arithmetic.hold(f.unit, offset < 0 ? arithmetic.default_normal_offset() : offset);
+}
+
+std::vector<std::string> range_warnings(const Context& context) {
+    std::vector<std::string> warnings;
+    const Arithmetic& arithmetic = context.arithmetic;
+    if (arithmetic.exact()) return warnings;
+    const Formats& f = arithmetic.formats();
+    const std::string words = "words of " + std::to_string(f.word_bits) + " bits: ";
+    const auto number = [](double x) {
+        std::ostringstream text;
+        text << x;
+        return text.str();
+    };
+    const auto brightest = [](const dvec3& c) { return std::max({c.x, c.y, c.z}); };
+    double colour = 0;
+    double bend = 0;  // largest ratio of refraction, either way
+    for (const Material& m : context.scene.objects) {
+        colour = std::max({colour, brightest(m.colour), m.diffuse, m.specular, m.transmit});
+        if (m.transmit > 0) bend = std::max({bend, m.ior / f.ior.most(), 1 / (m.ior * f.normal.most())});
+    }
+    double light = brightest(context.scene.background);
+    for (const Source& source : context.scene.sources) light = std::max(light, brightest(source.intensity));
+    if (colour > f.feature.most()) {
+        warnings.push_back(words + "a colour or coefficient of " + number(colour) + " is held as " +
+                           number(f.feature.most()));
+    }
+    if (light > f.intensity.most()) {
+        warnings.push_back(words + "a light of " + number(light) + " is held as " +
+                           number(f.intensity.most()));
+    }
+    if (bend > 1) {
+        warnings.push_back(words + "an index of refraction outside " + number(1 / f.normal.most()) + " to " +
+                           number(f.ior.most()) + " is held as the nearest of these");
+    }
+    // A direction is off by half a last bit a cell.
+    const double drift = context.depth * f.unit.step() / 2;
+    if (drift > 0.1) {
+        warnings.push_back(words + "rays may be off by " + number(drift) + " cells at the back of a cube " +
+                           number(context.depth) + " cells deep");
+    }
+    return warnings;
+}
+
 Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context) {
+    const Arithmetic& arithmetic = context.arithmetic;
     Visit visit;
     if (ray.outside) {
-        visit.crossing = border_crossing(ray);
+        visit.crossing = border_crossing(ray, arithmetic);
         return visit;
     }
-    visit.crossing = next_crossing(ray);
+    visit.crossing = next_crossing(ray, arithmetic);
     const double dz = ray.direction.z;
-    const double depth = context.scene.frame.depth;
     double t_end = visit.crossing.t;
-    // A ray may start a hair outside, from a polygon on the cube's face: it leaves at once, not in the past.
-    const double t_leave = dz > 0   ? std::max((depth - ray.position.z) * arith::reciprocal(dz), 0.0)
-                           : dz < 0 ? std::max(-ray.position.z * arith::reciprocal(dz), 0.0)
-                                    : infinity;
-    if (t_leave < t_end) {
-        t_end = t_leave;
+    // The division is only for rays that leave.
+    const double z_end = dz == 0 ? ray.position.z : depth_at(ray, t_end, arithmetic);
+    const double bound = dz > 0 ? context.depth : 0;
+    if (dz > 0 ? z_end > bound : z_end < bound) {
+        // A ray may start a hair outside, from a polygon on the cube's face: it leaves at once, not in the
+        // past.
+        const double t_leave = std::max(arithmetic.product(arithmetic.formats().distance,
+                                                           bound - ray.position.z, arithmetic.reciprocal(dz)),
+                                        0.0);
+        t_end = std::min(t_leave, t_end);
         visit.event = Visit::Event::leaves_cube;
-        visit.t_leave = t_leave;
+        visit.t_leave = t_end;
     }
     if (ray.reach <= t_end) {
         t_end = ray.reach;
         visit.event = Visit::Event::reaches_source;
     }
     const auto hit = nearest_in_cell(store, ray, t_end, context.settings.hit, context.scene.frame.level(),
-                                     &visit.comparisons);
+                                     arithmetic, &visit.comparisons);
     // What lies on the source itself does not hide it.
-    if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach - hair)) {
+    if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach - arithmetic.hair())) {
         visit.event = Visit::Event::hit;
         visit.hit = *hit;
     }
     return visit;
 }
 
-std::uint32_t visit_cycles(const Visit& visit, HitTest test, const CostTable& costs) {
+std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs) {
     const Comparisons& made = visit.comparisons;
-    if (test == HitTest::depth) return costs.walk_step + made.runs * costs.compare_depth;
-    const std::uint32_t each = test == HitTest::interval ? 0
-                               : test == HitTest::plane  ? costs.compare_plane
-                               : test == HitTest::mask   ? costs.compare_mask
-                                                         : costs.compare_edge;
-    return costs.walk_step + made.runs * costs.compare_interval + made.tests * each +
-           made.edges * costs.per_edge;
+    const HitTest test = settings.hit;
+    // Every test ends in a division: where on its way the ray meets the plane, or enters the run.
+    const std::uint32_t own = test == HitTest::plane  ? costs.compare_plane
+                              : test == HitTest::mask ? costs.compare_mask
+                              : test == HitTest::edge ? costs.compare_edge
+                                                      : 0;
+    const std::uint32_t run = test == HitTest::depth ? costs.compare_depth : costs.compare_interval;
+    return costs.walk_step + made.runs * run +
+           made.tests * (own + costs.reciprocal(settings.numbers.operators)) + made.edges * costs.per_edge;
 }
 
 Beyond beyond_face(const Context& context, Face face) {
@@ -106,18 +189,17 @@ Beyond beyond_face(const Context& context, Face face) {
     return work ? Beyond::exterior : Beyond::nothing;
 }
 
-void start_outside(Ray& ray, double t_leave) {
-    ray.position += t_leave * ray.direction;
-    ray.position.x = std::clamp(ray.position.x, 0.0, 1.0);
-    ray.position.y = std::clamp(ray.position.y, 0.0, 1.0);
-    ray.reach -= t_leave;
+void start_outside(Ray& ray, double t_leave, const Arithmetic& arithmetic) {
+    move_along(ray, t_leave, arithmetic);
     ray.outside = true;
-    ray.fresh = false;
 }
 
-ExteriorRequest exterior_request(const Ray& ray, const Crossing& crossing, int x, int y, double depth) {
+namespace {
+
+ExteriorRequest request_at_border(const Context& context, const Ray& ray, const Crossing& crossing, int x,
+                                  int y) {
     ExteriorRequest request;
-    request.direction = ray.direction;
+    request.direction = context.arithmetic.exact() ? ray.direction : glm::normalize(ray.direction);
     const bool axial = ray.inverse_x == 0 && ray.inverse_y == 0;
     if (axial && ray.outside) {
         // It was only carried to the border: its place is still that of the cell that sent it.
@@ -127,8 +209,8 @@ ExteriorRequest exterior_request(const Ray& ray, const Crossing& crossing, int x
     }
     double t = crossing.t;
     if (ray.outside) {  // back along the way that it came untested
-        const double face = ray.direction.z > 0 ? depth : 0;
-        t = (face - ray.position.z) * arith::reciprocal(ray.direction.z);
+        const double face = ray.direction.z > 0 ? context.depth : 0;
+        t = (face - ray.position.z) * (1 / ray.direction.z);
     }
     const dvec3 corner{double(x), double(y), 0};
     request.origin = corner + ray.position + t * ray.direction;
@@ -136,16 +218,51 @@ ExteriorRequest exterior_request(const Ray& ray, const Crossing& crossing, int x
     return request;
 }
 
+}  // namespace
+
+ExteriorRequest exterior_request(const Context& context, const Ray& ray, const Crossing& crossing, int x,
+                                 int y) {
+    ExteriorRequest request = request_at_border(context, ray, crossing, x, y);
+    if (is_shadow(ray.kind) && !context.arithmetic.exact()) {
+        request.reach = glm::distance(request.origin, context.scene.sources[ray.child].position);
+    }
+    return request;
+}
+
+dvec3 exterior_answer(const Context& context, const dvec3& intensity) {
+    return context.arithmetic.hold(context.arithmetic.formats().intensity, intensity);
+}
+
+namespace {
+
+/// The field of normals at a point of the cell, not normalised.
+dvec3 normal_at(const Voxel& voxel, const dvec3& local, const Arithmetic& arithmetic) {
+    const NormalField& field = voxel.normal;
+    const dvec2 uv = project({local.x, local.y, local.z - voxel.base}, voxel.drop);
+    if (arithmetic.exact()) return field.at(uv);
+    const Format& word = arithmetic.formats().field;
+    dvec3 normal;
+    for (int i = 0; i < 3; ++i) {
+        normal[i] = arithmetic.mac(word, field.base[i], uv.x, field.du[i], uv.y, field.dv[i]);
+    }
+    return normal;
+}
+
+}  // namespace
+
 HitSetup set_up_hit(const Context& context, const CellStore& store, const Ray& ray, const CellHit& hit, int x,
                     int y) {
     const Voxel& voxel = store.voxels[hit.voxel];
-    const Material& material = context.scene.objects[voxel.object];
+    const Material& material = context.objects[voxel.object];
+    const Arithmetic& arithmetic = context.arithmetic;
     HitSetup setup;
-    setup.local = ray.position + hit.t * ray.direction;
-    const dvec3 normal = voxel.normal.at(project(setup.local, voxel.drop));
-    setup.point = shade_point(setup.local + dvec3(x, y, 0), ray.direction, normal, voxel.plane.n);
-    for (std::size_t s = 0; s < context.scene.sources.size(); ++s) {
-        if (view_source(setup.point, context.scene.sources[s]).faces()) setup.facing |= std::uint64_t(1) << s;
+    setup.local = point_at(ray, hit.t, arithmetic);
+    setup.point = shade_point(setup.local + dvec3(x, y, 0), ray.direction,
+                              normal_at(voxel, setup.local, arithmetic), voxel.plane.n, arithmetic);
+    for (std::size_t s = 0; s < context.sources.size(); ++s) {
+        if (view_source(setup.point, context.sources[s], arithmetic).faces()) {
+            setup.facing |= std::uint64_t(1) << s;
+        }
     }
     const auto worth = [&](double share) {
         return share > 0 && ray.generation < context.settings.max_depth &&
@@ -153,23 +270,23 @@ HitSetup set_up_hit(const Context& context, const CellStore& store, const Ray& r
     };
     if (worth(mirror_share(material))) {
         setup.reflects = true;
-        setup.reflected = reflect_direction(setup.point);
+        setup.reflected = reflect_direction(setup.point, arithmetic);
     }
     if (worth(transmit_share(material))) {
-        setup.refracts = refract_direction(setup.point, material.ior, setup.refracted);
+        setup.refracts = refract_direction(setup.point, material.ior, setup.refracted, arithmetic);
     }
     return setup;
 }
 
 bool may_wait(const Context& context, const Ray& ray, std::uint32_t object) {
-    if (context.settings.shadows != Shadows::precast && !context.scene.sources.empty()) return true;
-    const Material& material = context.scene.objects[object];
+    if (context.settings.shadows != Shadows::precast && !context.sources.empty()) return true;
+    const Material& material = context.objects[object];
     return ray.generation < context.settings.max_depth &&
            (mirror_share(material) > 0 || transmit_share(material) > 0);
 }
 
 int waiting_generations(const Context& context) {
-    const bool shadows = context.settings.shadows != Shadows::precast && !context.scene.sources.empty();
+    const bool shadows = context.settings.shadows != Shadows::precast && !context.sources.empty();
     return context.settings.max_depth + (shadows ? 1 : 0);
 }
 
@@ -180,20 +297,24 @@ Ray primary_ray(const Context& context, int x, int y) {
     ray.home_x = std::uint16_t(x);
     ray.home_y = std::uint16_t(y);
     ray.position = {0.5, 0.5, 0};
-    set_direction(ray, frame.primary_ray(x + 0.5, y + 0.5).direction);
+    const Arithmetic& arithmetic = context.arithmetic;
+    const dvec3 direction = arithmetic.exact() || frame.viewer_at_infinity
+                                ? frame.primary_ray(x + 0.5, y + 0.5).direction
+                                : arithmetic.normalise(dvec3(x + 0.5, y + 0.5, 0) - context.eye);
+    set_direction(ray, direction, arithmetic);
     return ray;
 }
 
 Ray reflected_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
                   const HitSetup& setup, int x, int y) {
-    const Material& material = context.scene.objects[store.voxels[hit.voxel].object];
+    const Material& material = context.objects[store.voxels[hit.voxel].object];
     return secondary_ray(context, store, parent, hit, setup, RayKind::reflected, setup.reflected,
                          mirror_share(material), x, y);
 }
 
 Ray refracted_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
                   const HitSetup& setup, int x, int y) {
-    const Material& material = context.scene.objects[store.voxels[hit.voxel].object];
+    const Material& material = context.objects[store.voxels[hit.voxel].object];
     return secondary_ray(context, store, parent, hit, setup, RayKind::refracted, setup.refracted,
                          transmit_share(material), x, y);
 }
@@ -201,9 +322,9 @@ Ray refracted_ray(const Context& context, const CellStore& store, const Ray& par
 Ray shadow_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
                const HitSetup& setup, std::size_t source, int x, int y) {
     Ray ray = child_of(parent, RayKind::shadow, unsigned(source), x, y);
-    const SourceView view = view_source(setup.point, context.scene.sources[source]);
-    set_direction(ray, view.direction);
-    ray.reach = view.distance;
+    const SourceView view = view_source(setup.point, context.sources[source], context.arithmetic);
+    set_direction(ray, view.direction, context.arithmetic);
+    ray.reach = context.arithmetic.hold_reach(view.distance);
     leave_surface(ray, context, setup.local, store.voxels[hit.voxel]);
     return ray;
 }
@@ -215,34 +336,44 @@ Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32
         (std::uint64_t(y) * std::uint64_t(context.scene.frame.width) + std::uint64_t(x)) << 32 | voxel;
     Ray ray = child_of(parent, kind, unsigned(source), x, y);
     ray.slot = voxel;
+    const Arithmetic& arithmetic = context.arithmetic;
     const dvec3 local = store.voxels[voxel].point;
-    const dvec3 way = context.scene.sources[source].position - (local + dvec3(x, y, 0));
-    ray.reach = arith::square_root(arith::dot(way, way));
-    set_direction(ray, ray.reach > 0 ? way * arith::reciprocal(ray.reach) : dvec3(0, 0, 1));
+    const dvec3 way = context.sources[source].position - (local + dvec3(x, y, 0));
+    dvec3 direction{0, 0, 1};
+    double distance = 0;
+    if (way != dvec3(0)) direction = arithmetic.normalise(way, distance);
+    ray.reach = arithmetic.hold_reach(distance);
+    set_direction(ray, direction, arithmetic);
     leave_surface(ray, context, local, store.voxels[voxel]);
     return ray;
 }
 
 dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t object, std::uint64_t lit,
                 const dvec3& reflected, const dvec3& refracted) {
-    const Material& material = context.scene.objects[object];
-    const auto& sources = context.scene.sources;
-    const dvec3 local =
-        local_intensity(setup.point, material, sources.data(), sources.size(), lit & setup.facing);
-    return combine_intensity(local, material, reflected, refracted);
+    const Material& material = context.objects[object];
+    const dvec3 local = local_intensity(setup.point, material, context.sources.data(), context.sources.size(),
+                                        lit & setup.facing, context.arithmetic);
+    return combine_intensity(local, material, reflected, refracted, context.arithmetic);
 }
 
 std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs) {
+    const OperatorSettings& operators = context.settings.numbers.operators;
+    const std::uint32_t root = costs.root(operators);
+    const std::uint32_t start = 2 * costs.reciprocal(operators);  // the reciprocals that a ray carries
     std::uint32_t cycles = costs.shade_setup;
-    if (context.settings.normals == Normals::linear) cycles += costs.normal_linear;
-    cycles += std::uint32_t(context.scene.sources.size()) * costs.source_view;
-    if (setup.reflects) cycles += costs.reflect;
-    if (setup.refracts) cycles += costs.refract;
+    if (context.settings.normals == Normals::linear) cycles += costs.normal_linear + root;
+    cycles += std::uint32_t(context.sources.size()) * (costs.source_view + root);
+    if (context.settings.shadows == Shadows::per_hit) {
+        cycles += std::uint32_t(std::bitset<64>(setup.facing).count()) * start;
+    }
+    if (setup.reflects) cycles += costs.reflect + root + start;
+    if (setup.refracts) cycles += costs.refract + costs.reciprocal(operators) + 2 * root + start;
     return cycles;
 }
 
-std::uint32_t shade_cycles(std::uint64_t lit, const CostTable& costs) {
-    return costs.local_intensity + std::uint32_t(std::bitset<64>(lit).count()) * costs.per_lit_source;
+std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, const CostTable& costs) {
+    const std::uint32_t each = costs.per_lit_source + costs.power(context.settings.numbers.operators);
+    return costs.local_intensity + std::uint32_t(std::bitset<64>(lit).count()) * each;
 }
 
 Pixel display_cell(const Context& context, const CellStore& store, int x, int y) {
@@ -250,12 +381,13 @@ Pixel display_cell(const Context& context, const CellStore& store, int x, int y)
     Ray ray;
     ray.position = {0.5, 0.5, 0};
     ray.fresh = false;
-    set_direction(ray, {0, 0, 1});
+    set_direction(ray, {0, 0, 1}, context.arithmetic);
     const Frame& frame = context.scene.frame;
-    const auto hit = nearest_in_cell(store, ray, frame.depth, context.settings.hit, frame.level());
+    const auto hit =
+        nearest_in_cell(store, ray, context.depth, context.settings.hit, frame.level(), context.arithmetic);
     if (!hit) {
         record_background(pixel);
-        pixel.colour = context.scene.background;
+        pixel.colour = context.background;
         return pixel;
     }
     const Voxel& voxel = store.voxels[hit->voxel];

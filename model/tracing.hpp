@@ -7,11 +7,29 @@
 
 namespace raycell {
 
-/// What every cell knows once the scene is loaded.
+/// What every cell knows once the scene is loaded: objects' features, sources, background and viewer as the
+/// machine's arithmetic holds them. `scene` keeps them as they are, for the exterior.
 struct Context {
     const CellScene& scene;
     const PictureSettings& settings;
+    Arithmetic arithmetic;
+    std::vector<Material> objects;
+    std::vector<Source> sources;
+    dvec3 background{0, 0, 0};
+    dvec3 eye{0, 0, 0};
+    double depth = 1;          ///< of the cube, cell widths
+    double normal_offset = 0;  ///< cells
+
+    /// Both must outlive it. Throws std::invalid_argument for numbers that Arithmetic refuses.
+    Context(const CellScene& placed, const PictureSettings& picture_settings);
 };
+
+/// What of the scene lies outside the range of the machine's words, for standard error: what it is, and what
+/// becomes of it. Empty in exact arithmetic.
+std::vector<std::string> range_warnings(const Context& context);
+
+/// Features as the cells latch them.
+Material hold(const Material& material, const Arithmetic& arithmetic);
 
 /// What becomes of a ray in a cell.
 struct Visit {
@@ -30,7 +48,7 @@ struct Visit {
 Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context);
 
 /// Cycles that the traversal unit needs for a visit.
-std::uint32_t visit_cycles(const Visit& visit, HitTest test, const CostTable& costs);
+std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs);
 
 /// What is behind a face that a ray leaves through: nothing (background, lit) or work for the exterior.
 enum class Beyond { nothing, exterior };
@@ -44,7 +62,7 @@ inline Face face_of(Side side) {
 inline Face face_of_depth(const Ray& ray) { return ray.direction.z > 0 ? face_back : face_front; }
 
 /// Puts a ray that leaves through the front or the back on its way to the border.
-void start_outside(Ray& ray, double t_leave);
+void start_outside(Ray& ray, double t_leave, const Arithmetic& arithmetic);
 
 /// A ray handed to the exterior: from where it left the cube, in the array's coordinates.
 struct ExteriorRequest {
@@ -52,8 +70,12 @@ struct ExteriorRequest {
     dvec3 direction{0, 0, 1};
     double reach = 0;
 };
-/// `ray` stands on the border of cell (x, y), before crossing it.
-ExteriorRequest exterior_request(const Ray& ray, const Crossing& crossing, int x, int y, double depth);
+/// `ray` stands on the border of cell (x, y), before crossing it. In fixed arithmetic the exterior, which is
+/// exact, makes the direction unit again and takes the distance to a source from the source.
+ExteriorRequest exterior_request(const Context& context, const Ray& ray, const Crossing& crossing, int x,
+                                 int y);
+/// An intensity from the exterior, as a message carries it.
+dvec3 exterior_answer(const Context& context, const dvec3& intensity);
 
 /// Classical ray tracing outside the cube (paper, section 3.3, second solution).
 class ExteriorTracer {
@@ -105,7 +127,7 @@ dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t obj
 
 /// Cycles of the shading unit.
 std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs);
-std::uint32_t shade_cycles(std::uint64_t lit, const CostTable& costs);
+std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, const CostTable& costs);
 
 /// The picture after loading: the cell's nearest voxel at its centre along z, no shadows (--stage load).
 Pixel display_cell(const Context& context, const CellStore& store, int x, int y);

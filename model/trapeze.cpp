@@ -178,6 +178,33 @@ class Cutter {
 
 }  // namespace
 
-std::vector<Trapeze> precompute(const Polygon& polygon) { return Cutter(polygon).run(); }
+EdgeFunction hold_edge(const EdgeFunction& edge, const dvec2& anchor, const Format& slope,
+                       const Format& offset) {
+    const dvec2 on_edge = anchor - edge.at(anchor) * dvec2(edge.a, edge.b);
+    EdgeFunction held{slope.hold(edge.a), slope.hold(edge.b), 0, edge.piece};
+    held.c = offset.hold(-(held.a * on_edge.x + held.b * on_edge.y));
+    return held;
+}
+
+std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithmetic) {
+    std::vector<Trapeze> trapezes = Cutter(polygon).run();
+    if (arithmetic.exact()) return trapezes;
+    const Format& word = arithmetic.formats().loading;
+    for (Trapeze& t : trapezes) {
+        dvec3 centre{0, 0, 0};
+        for (int i = 0; i < t.corner_count; ++i) {
+            dvec3& corner = t.corners[std::size_t(i)];
+            corner = arithmetic.hold(word, corner);
+            centre += corner / double(t.corner_count);
+        }
+        for (int i = 0; i < t.edge_count; ++i) {
+            EdgeFunction& edge = t.edges[std::size_t(i)];
+            edge = hold_edge(edge, project(centre, t.drop), word, word);
+        }
+        t.top = word.hold(t.top);
+        t.bottom = word.hold(t.bottom);
+    }
+    return trapezes;
+}
 
 }  // namespace raycell

@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "model/arithmetic.hpp"
 #include "model/polygon.hpp"
 
 namespace raycell {
@@ -19,9 +20,10 @@ struct EdgeFunction {
     double at(const dvec2& uv) const { return a * uv.x + b * uv.y + c; }
 };
 
-/// Distances below this are rounding, not geometry (cells). Points this far outside an edge count as inside,
-/// so that neighbours that share an edge leave no crack.
-constexpr double hair = 1e-7;
+/// An edge in words: (a, b) rounded to `slope`, then c taken from these at `anchor`, a point near the edge,
+/// and rounded to `offset`.
+EdgeFunction hold_edge(const EdgeFunction& edge, const dvec2& anchor, const Format& slope,
+                       const Format& offset);
 
 /// A convex part of a polygon between two lines parallel to the rows. Polygons without height on the screen
 /// (seen edge-on along a row) are cut along z instead, those without height and depth along x.
@@ -44,7 +46,7 @@ struct Trapeze {
     bool reaches_below(int row) const { return bottom + slack.y > row + 1; }
 };
 
-/// Cuts a polygon that lies inside the cube into trapezes.
-std::vector<Trapeze> precompute(const Polygon& polygon);
+/// Cuts a polygon that lies inside the cube into trapezes; in fixed arithmetic, of loading words.
+std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithmetic);
 
 }  // namespace raycell

@@ -29,12 +29,19 @@ void count_ray(RayCounts& counts, RayKind kind) {
 UntimedMachine::UntimedMachine(const CellScene& scene, const PictureSettings& settings,
                                const ExteriorTracer* exterior)
     : settings_(settings),
-      context_{scene, settings_},
+      context_(scene, settings_),
       exterior_(exterior),
-      cells_(load_array(scene, settings_, &loaded_)) {
+      cells_(load_array(scene, settings_, context_.arithmetic, &loaded_)) {
     if (settings.exterior == ExteriorMode::host && settings.stage == RunStage::trace && !exterior) {
         throw std::invalid_argument("exterior 'host' needs a tracer for what lies outside the cube");
     }
+}
+
+StorageCounts UntimedMachine::storage() const {
+    const VoxelBits each = voxel_bits(settings_, context_.arithmetic.formats(), context_.sources.size());
+    StorageCounts counts;
+    for (const CellStore& cell : cells_) counts.add(cell, each);
+    return counts;
 }
 
 bool UntimedMachine::in_array(Place at) const {
@@ -76,7 +83,7 @@ void UntimedMachine::precast() {
         for (int x = 0; x < frame.width; ++x) {
             CellStore& store = cell({x, y});
             for (std::uint32_t v = 0; v < store.voxels.size(); ++v) {
-                for (std::size_t s = 0; s < context_.scene.sources.size(); ++s) {
+                for (std::size_t s = 0; s < context_.sources.size(); ++s) {
                     const Ray ray = voxel_shadow_ray(context_, store, v, s, RayKind::precast, x, y);
                     count_ray(rays_, ray.kind);
                     if (trace(ray, x, y, nullptr).blocked) store.lit[v] &= ~(std::uint64_t(1) << s);
@@ -99,7 +106,7 @@ UntimedMachine::Answer UntimedMachine::trace(Ray ray, int x, int y, Pixel* pixel
             case Visit::Event::leaves_cube: {
                 const Face face = face_of_depth(ray);
                 if (beyond_face(context_, face) == Beyond::nothing) return leave(ray, face, {}, at, pixel);
-                start_outside(ray, visit.t_leave);
+                start_outside(ray, visit.t_leave, context_.arithmetic);
                 continue;  // this cell only passes it on now
             }
             case Visit::Event::forward:
@@ -110,7 +117,7 @@ UntimedMachine::Answer UntimedMachine::trace(Ray ray, int x, int y, Pixel* pixel
             const Face face = ray.outside ? face_of_depth(ray) : face_of(visit.crossing.side);
             return leave(ray, face, visit.crossing, at, pixel);
         }
-        cross(ray, visit.crossing);
+        cross(ray, visit.crossing, context_.arithmetic);
         at = next;
         ++rays_.ray_hops;
         if (pixel) ++pixel->hops;
@@ -122,15 +129,14 @@ UntimedMachine::Answer UntimedMachine::leave(const Ray& ray, Face face, const Cr
     Answer answer;
     if (beyond_face(context_, face) == Beyond::nothing) {
         ++rays_.lost;
-        answer.colour = context_.scene.background;
+        answer.colour = context_.background;
     } else {
         ++rays_.exterior;
-        const ExteriorRequest request =
-            exterior_request(ray, crossing, at.x, at.y, context_.scene.frame.depth);
+        const ExteriorRequest request = exterior_request(context_, ray, crossing, at.x, at.y);
         if (is_shadow(ray.kind)) {
             answer.blocked = exterior_->blocked(request, ray);
         } else {
-            answer.colour = exterior_->radiance(request, ray, pixel);
+            answer.colour = exterior_answer(context_, exterior_->radiance(request, ray, pixel));
         }
         // To the exterior over the border link, and back unless there is nothing to tell.
         const unsigned hops = ray.kind == RayKind::precast && !answer.blocked ? 1 : 2;
@@ -172,7 +178,7 @@ UntimedMachine::Answer UntimedMachine::answer_hit(const Ray& ray, const CellHit&
     const HitSetup setup = set_up_hit(context_, store, ray, hit, at.x, at.y);
     if (ray.kind == RayKind::primary) record_first_hit(*pixel, setup, voxel.polygon);
     std::uint64_t lit = 0;
-    for (std::size_t s = 0; s < context_.scene.sources.size(); ++s) {
+    for (std::size_t s = 0; s < context_.sources.size(); ++s) {
         const std::uint64_t bit = std::uint64_t(1) << s;
         if ((setup.facing & bit) && source_visible(ray, hit, setup, s, at, pixel)) lit |= bit;
     }

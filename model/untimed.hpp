@@ -38,6 +38,8 @@ class UntimedMachine {
     const RayCounts& rays() const { return rays_; }
     const LoadCounts& loaded() const { return loaded_; }
     const std::vector<CellStore>& cells() const { return cells_; }
+    StorageCounts storage() const;
+    const Context& context() const { return context_; }
 
   private:
     struct Answer {

@@ -29,7 +29,7 @@ double most_over(const EdgeFunction& edge, const Rectangle& r) {
 }
 
 /// Whether the span's polygon covers the pixel centre (rung `depth`); z is its depth there.
-bool covers_centre(const Span& span, double& z) {
+bool covers_centre(const Span& span, double hair, double& z) {
     const dvec3& n = span.plane.n;
     if (std::abs(n.z) < 1e-12) return false;
     z = (span.plane.c - 0.5 * (n.x + n.y)) / n.z;
@@ -51,7 +51,7 @@ Rectangle part_bounds(const std::vector<dvec3>& part, int drop) {
 }
 
 /// The window of the mask: the part's bounds, rounded outwards to 32nds of the footprint.
-Rectangle set_window(Voxel& voxel, const Rectangle& whole, const Rectangle& bounds) {
+Rectangle set_window(Voxel& voxel, const Rectangle& whole, const Rectangle& bounds, double hair) {
     const dvec2 size = whole.high - whole.low;
     const dvec2 low = (bounds.low - hair - whole.low) / size * double(window_steps);
     const dvec2 high = (bounds.high + hair - whole.low) / size * double(window_steps);
@@ -66,21 +66,21 @@ Rectangle set_window(Voxel& voxel, const Rectangle& whole, const Rectangle& boun
             whole.low + step * dvec2(voxel.window[1], voxel.window[3])};
 }
 
-bool overlap(const Rectangle& a, const Rectangle& b) {
+bool overlap(const Rectangle& a, const Rectangle& b, double hair) {
     return a.low.x <= b.high.x + hair && b.low.x <= a.high.x + hair && a.low.y <= b.high.y + hair &&
            b.low.y <= a.high.y + hair;
 }
 
 /// A sub-cell's bit is set where the polygon touches it at all: watertight first.
-std::uint64_t coverage(const EdgeFunction* edges, int count, const Rectangle& whole,
-                       const Rectangle& bounds) {
+std::uint64_t coverage(const EdgeFunction* edges, int count, const Rectangle& whole, const Rectangle& bounds,
+                       double hair) {
     std::uint64_t mask = 0;
     const dvec2 step = (whole.high - whole.low) / 8.0;
     for (int row = 0; row < 8; ++row) {
         for (int column = 0; column < 8; ++column) {
             const dvec2 low = whole.low + step * dvec2(column, row);
             const Rectangle part{low, low + step};
-            bool touched = overlap(part, bounds);
+            bool touched = overlap(part, bounds, hair);
             for (int i = 0; i < count && touched; ++i) touched = most_over(edges[i], part) >= -hair;
             if (touched) mask |= std::uint64_t(1) << (8 * row + column);
         }
@@ -102,6 +102,12 @@ std::vector<dvec3> cell_part(const Span& span) {
     return part;
 }
 
+dvec3 hold_point(const dvec3& point, const Arithmetic& arithmetic) {
+    const Formats& f = arithmetic.formats();
+    return {arithmetic.hold(f.unit, point.x), arithmetic.hold(f.unit, point.y),
+            arithmetic.hold(f.depth, point.z)};
+}
+
 /// Mean of the corners, and area.
 void set_point(Voxel& voxel, const std::vector<dvec3>& part) {
     dvec3 sum{0, 0, 0};
@@ -112,22 +118,79 @@ void set_point(Voxel& voxel, const std::vector<dvec3>& part) {
     voxel.area = 0.5 * glm::length(newell(part));
 }
 
+/// Plane and normal field of the voxel, from the span's: in words, right in the middle of the polygon's part.
+void set_functions(Voxel& voxel, const Span& span, Normals normals, const Arithmetic& arithmetic) {
+    const dvec2 own = project(voxel.point, voxel.drop);
+    voxel.plane = span.plane;
+    voxel.normal = span.normal;
+    if (normals == Normals::voxel) voxel.normal = {span.normal.at(own), {0, 0, 0}, {0, 0, 0}};
+    if (arithmetic.exact()) return;
+    const Formats& formats = arithmetic.formats();
+    const dvec3 shift{0, 0, voxel.base};
+    Plane plane = span.plane;
+    plane.c -= plane.n.z * voxel.base;
+    voxel.plane = hold_plane(plane, voxel.drop, voxel.point - shift, formats.unit, formats.offset);
+    NormalField field = voxel.normal;
+    field.base = field.at(project(shift, voxel.drop));
+    const dvec2 anchor = project(voxel.point - shift, voxel.drop);
+    double largest = 0;
+    for (const dvec3& v : {field.base, field.du, field.dv}) {
+        largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    }
+    // Normals that turn faster than the words can say belong to a polygon much smaller than a cell.
+    if (largest > formats.normal.most()) field = {field.at(anchor), {0, 0, 0}, {0, 0, 0}};
+    voxel.normal = hold_field(field, anchor, formats.normal, formats.normal);
+}
+
+/// The run's ends; moves what is relative to its beginning along with it.
+void set_run(Voxel& voxel, CellStore& store, double level, const Arithmetic& arithmetic) {
+    const Formats& formats = arithmetic.formats();
+    voxel.near = arithmetic.hold(formats.depth, voxel.near_level * level);
+    voxel.far = arithmetic.hold(formats.depth, voxel.far_level * level);
+    if (arithmetic.exact()) return;
+    // Levels finer than the word's last bit: a run is never empty.
+    voxel.far = std::max(voxel.far, voxel.near + formats.depth.step());
+    if (voxel.base == voxel.near) return;
+    const double shift = voxel.near - voxel.base;
+    voxel.base = voxel.near;
+    if (voxel.drop == 2) return;  // z is not among (u, v)
+    for (std::uint32_t i = 0; i < voxel.edge_count; ++i) {
+        EdgeFunction& edge = store.edges[voxel.first_edge + i];
+        edge.c = arithmetic.mac(formats.edge_offset, edge.c, edge.b, shift);
+    }
+}
+
+/// An edge of the voxel, in words; `whole` is the voxel's footprint.
+EdgeFunction voxel_edge(const EdgeFunction& edge, const Voxel& voxel, const Rectangle& whole,
+                        const Arithmetic& arithmetic) {
+    if (arithmetic.exact()) return edge;
+    const Formats& formats = arithmetic.formats();
+    const dvec2 shift = project({0, 0, voxel.base}, voxel.drop);
+    EdgeFunction relative = edge;
+    relative.c = edge.at(shift);
+    return hold_edge(relative, 0.5 * (whole.low + whole.high) - shift, formats.unit, formats.edge_offset);
+}
+
 /// Adds a piece of the same polygon to the voxel that it already has in this cell.
-void merge(Voxel& voxel, const Voxel& piece) {
+void merge(Voxel& voxel, const Voxel& piece, const Arithmetic& arithmetic) {
     voxel.near_level = std::min(voxel.near_level, piece.near_level);
     voxel.far_level = std::max(voxel.far_level, piece.far_level);
     const double area = voxel.area + piece.area;
-    if (area > 0) voxel.point = (voxel.area * voxel.point + piece.area * piece.point) / area;
+    if (area > 0) {
+        voxel.point = (voxel.area * voxel.point + piece.area * piece.point) / area;
+        voxel.point = hold_point(voxel.point, arithmetic);
+    }
     voxel.area = area;
 }
 
 }  // namespace
 
-bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level) {
+bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level,
+                 const Arithmetic& arithmetic) {
+    const double hair = arithmetic.hair();
     Voxel voxel;
     voxel.polygon = span.polygon;
     voxel.object = span.object;
-    voxel.plane = span.plane;
     voxel.drop = std::uint8_t(span.drop);
     const std::vector<dvec3> part = cell_part(span);
     if (part.empty()) return false;  // only touches the cell's side: the neighbour has it
@@ -144,7 +207,7 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
     far = std::min(far, part_far + span.slack.z);
     if (settings.hit == HitTest::depth) {
         double z = 0;
-        if (!covers_centre(span, z)) return false;
+        if (!covers_centre(span, hair, z)) return false;
         near = far = z;
     } else if (near > far) {
         if (near > far + hair) return false;  // the part does not reach this cell
@@ -166,31 +229,40 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
         }
         if (settings.hit == HitTest::mask) {
             const Rectangle bounds = part_bounds(part, span.drop);
-            voxel.mask = coverage(crossing.data(), crossings, set_window(voxel, whole, bounds), bounds);
+            voxel.mask =
+                coverage(crossing.data(), crossings, set_window(voxel, whole, bounds, hair), bounds, hair);
         }
     }
     set_point(voxel, part);
-
-    const auto set_normal = [&](Voxel& v) {
-        v.normal = span.normal;
-        if (settings.normals == Normals::voxel) {
-            v.normal = {span.normal.at(project(v.point, span.drop)), {0, 0, 0}, {0, 0, 0}};
+    voxel.point = hold_point(voxel.point, arithmetic);
+    set_run(voxel, store, level, arithmetic);
+    if (settings.hit == HitTest::edge) {
+        const Rectangle whole = footprint(voxel, level);
+        for (int i = 0; i < crossings; ++i) {
+            EdgeFunction& edge = crossing[std::size_t(i)];
+            edge = voxel_edge(edge, voxel, whole, arithmetic);
         }
-    };
+    }
     // The pieces of one polygon come one after the other. A mask belongs to its own window: kept apart.
     const bool mergeable = settings.hit != HitTest::mask;
     if (mergeable && !store.voxels.empty() && store.voxels.back().polygon == span.polygon) {
         Voxel& before = store.voxels.back();
-        merge(before, voxel);
-        set_normal(before);
+        merge(before, voxel, arithmetic);
+        set_run(before, store, level, arithmetic);
+        set_functions(before, span, settings.normals, arithmetic);
         if (settings.hit == HitTest::edge && before.pieces > 0) {
             if (crossings == 0) {
                 store.edges.resize(before.first_edge);
                 before.edge_count = before.pieces = 0;
             } else {
                 for (int i = 0; i < crossings; ++i) {
-                    crossing[std::size_t(i)].piece = before.pieces;
-                    store.edges.push_back(crossing[std::size_t(i)]);
+                    EdgeFunction edge = crossing[std::size_t(i)];
+                    edge.piece = before.pieces;
+                    if (before.drop != 2 && before.base != voxel.base) {  // the run began nearer before
+                        edge.c = arithmetic.mac(arithmetic.formats().edge_offset, edge.c, edge.b,
+                                                before.base - voxel.base);
+                    }
+                    store.edges.push_back(edge);
                 }
                 before.edge_count += std::uint32_t(crossings);
                 ++before.pieces;
@@ -204,7 +276,7 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
         store.last_overflowed = span.polygon;
         return false;
     }
-    set_normal(voxel);
+    set_functions(voxel, span, settings.normals, arithmetic);
     if (settings.hit == HitTest::edge && crossings > 0) {
         voxel.first_edge = std::uint32_t(store.edges.size());
         voxel.edge_count = std::uint32_t(crossings);
@@ -214,28 +286,47 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
         voxel.first_edge = std::uint32_t(store.edges.size());
     }
     store.voxels.push_back(voxel);
-    if (settings.display == Display::gouraud) store.intensities.push_back(span.intensity);
+    if (settings.display == Display::gouraud)
+        store.intensities.push_back(arithmetic.hold(arithmetic.formats().intensity, span.intensity));
     return true;
 }
 
-VoxelBits voxel_bits(const PictureSettings& settings, int word_bits, std::size_t sources) {
-    // Identity and features: polygon 20, colour 3x8, Kd, Ks, T 8 each, Shine 12, index of refraction 12.
-    constexpr int features = 20 + 24 + 24 + 24;
+void StorageCounts::add(const CellStore& store, const VoxelBits& each) {
+    const std::uint64_t cell_voxels = store.voxels.size();
+    const std::uint64_t cell_bits =
+        cell_voxels * std::uint64_t(each.base) + store.edges.size() * std::uint64_t(each.per_edge);
+    voxels += cell_voxels;
+    edges += store.edges.size();
+    overflowed += store.overflowed;
+    occupied_cells += cell_voxels > 0;
+    max_voxels = std::max(max_voxels, cell_voxels);
+    bits += cell_bits;
+    max_cell_bits = std::max(max_cell_bits, cell_bits);
+}
+
+int feature_bits(const Formats& formats) {
+    return 6 * formats.feature_bits() + Formats::shine_bits + formats.ior_bits() + 1;
+}
+
+VoxelBits voxel_bits(const PictureSettings& settings, const Formats& formats, std::size_t sources) {
+    constexpr int polygon_id = 20;
+    const int word = formats.word_bits;
     int level_bits = 0;
     while ((1 << level_bits) < settings.depth_levels) ++level_bits;
     VoxelBits bits;
-    bits.base = features + level_bits + 3 * word_bits;  // one depth, one normal: the paper's voxel
+    // One depth, one normal: the paper's voxel.
+    bits.base = polygon_id + feature_bits(formats) + level_bits + 3 * word;
     if (settings.hit != HitTest::depth) bits.base += level_bits;
-    // Two slopes, an offset and which axis they are for.
-    if (settings.hit >= HitTest::plane) bits.base += 3 * word_bits + 2;
+    // Two slopes and an offset; which axis they are for, and its sign.
+    if (settings.hit >= HitTest::plane) bits.base += 3 * word + 3;
     if (settings.hit == HitTest::mask) bits.base += 64 + 4 * 5;  // coverage and its window
     if (settings.hit == HitTest::edge) bits.base += 8;           // how many edges follow
-    if (settings.normals == Normals::linear) bits.base += 6 * word_bits;
+    if (settings.normals == Normals::linear) bits.base += 6 * word;
     if (settings.shadows != Shadows::per_hit) {
         bits.base += int(sources) * (settings.shadows == Shadows::memo ? 2 : 1);
-        bits.base += 3 * word_bits;  // the point that its shadow rays start from
+        bits.base += 2 * word + formats.depth_word_bits();  // the point that its shadow rays start from
     }
-    if (settings.hit == HitTest::edge) bits.per_edge = 3 * word_bits + 2;
+    if (settings.hit == HitTest::edge) bits.per_edge = 2 * word + formats.depth_word_bits() + 2;
     return bits;
 }
 

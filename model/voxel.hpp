@@ -10,12 +10,15 @@
 namespace raycell {
 
 /// The run of depth levels that a polygon takes up in one cell, and what the rung above `interval` adds to
-/// it. Lengths in cell widths, x and y relative to the cell's corner, z absolute.
+/// it. Lengths in cell widths; plane, edges and normal field relative to the cell's corner and `base`.
 struct Voxel {
     std::uint32_t polygon = 0;
     std::uint32_t object = 0;
     std::int32_t near_level = 0;  ///< first depth level
     std::int32_t far_level = 0;   ///< one past the last
+    double near = 0;              ///< depth of the run's beginning: follows from near_level
+    double far = 0;               ///< and of its end
+    double base = 0;              ///< what z is relative to: 0 in exact arithmetic, `near` in words
     Plane plane;
     NormalField normal;
     std::uint8_t drop = 2;
@@ -26,7 +29,7 @@ struct Voxel {
     /// The mask's window: u from, u to, v from, v to, in 32nds of the cell (of the run where an axis is z).
     /// It frames the polygon's part, so that the 64 bits lie where there is something to tell apart.
     std::array<std::uint8_t, 4> window{0, 32, 0, 32};
-    dvec3 point{0, 0, 0};  ///< the voxel's own point: precast and memo shadows, `voxel` normals
+    dvec3 point{0, 0, 0};  ///< the voxel's own point (z absolute): precast and memo shadows, `voxel` normals
     double area = 0;       ///< of the polygon in the cell, while loading: weight of `point` in a merge
 };
 
@@ -44,15 +47,31 @@ struct CellStore {
 /// Makes the voxel of the cell that the span is at and stores it, or adds it to the voxel that the same
 /// polygon has there already. Returns false if the polygon turns out not to touch the cell (or, at rung
 /// `depth`, not to cover its centre), or if the store is full; then `overflowed` counts it.
-bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level);
+bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level,
+                 const Arithmetic& arithmetic);
 
 constexpr int window_steps = 32;
 
-/// Bits that one voxel takes, without its edges, and bits of one edge.
+/// Bits that one voxel takes, without its edges, and bits of one edge; docs/cell.md has the table.
 struct VoxelBits {
     int base = 0;
     int per_edge = 0;
 };
-VoxelBits voxel_bits(const PictureSettings& settings, int word_bits, std::size_t sources);
+VoxelBits voxel_bits(const PictureSettings& settings, const Formats& formats, std::size_t sources);
+
+/// What an array of cells stores.
+struct StorageCounts {
+    std::uint64_t voxels = 0;
+    std::uint64_t edges = 0;
+    std::uint64_t overflowed = 0;
+    std::uint64_t occupied_cells = 0;
+    std::uint64_t max_voxels = 0;     ///< of one cell
+    std::uint64_t bits = 0;           ///< of all cells' voxels and edges
+    std::uint64_t max_cell_bits = 0;  ///< of one cell's
+    void add(const CellStore& store, const VoxelBits& each);
+};
+
+/// Bits of an object's features: colour, Kd, Ks, T, Shine, index of refraction, mirror or not.
+int feature_bits(const Formats& formats);
 
 }  // namespace raycell

@@ -13,7 +13,8 @@ void RowDistributor::take(LoadItem& item, Cycle now) {
         const bool gouraud = env.context.settings.display == Display::gouraud;
         if (row_ >= item.trapeze.first_row(env.height())) {
             work = env.costs().distribution_span;
-            auto span = cut_span(item.trapeze, row_, env.width(), gouraud ? &item.intensities : nullptr);
+            auto span = cut_span(item.trapeze, row_, env.width(), env.context.arithmetic,
+                                 gouraud ? &item.intensities : nullptr);
             if (span) {
                 to_row_ = env.pools.loads.take();
                 to_row_->kind = LoadItem::Kind::span;

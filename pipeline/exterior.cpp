@@ -48,7 +48,7 @@ void Exterior::begin(Processor& processor, std::uint32_t port, int index, Cycle 
     RayPacket* packet = border.from_cell->front(index).ray;
     const Ray& ray = packet->ray;
     const ExteriorRequest request =
-        exterior_request(ray, packet->visit.crossing, border.x, border.y, env.context.scene.frame.depth);
+        exterior_request(env.context, ray, packet->visit.crossing, border.x, border.y);
     processor = Processor();
     processor.busy = true;
     processor.port = port;
@@ -60,7 +60,7 @@ void Exterior::begin(Processor& processor, std::uint32_t port, int index, Cycle 
     } else {
         Pixel* pixel = ray.kind == RayKind::primary ? &env.picture.at(ray.home_x, ray.home_y) : nullptr;
         processor.answer = answer_to(ray, Answer::Kind::intensity);
-        processor.answer.colour = tracer_.radiance(request, ray, pixel);
+        processor.answer.colour = exterior_answer(env.context, tracer_.radiance(request, ray, pixel));
     }
     border.from_cell->pop(index);
     env.pools.rays.give_back(packet);

@@ -20,7 +20,7 @@ LoadItem* Geometry::next_item() {
     while (polygon_ < scene.polygons.size()) {
         const Polygon& next = scene.polygons[polygon_];
         Polygon polygon = next;
-        if (!clip_to_cube(polygon, scene.frame.cube())) {
+        if (!clip_to_cube(polygon, scene.frame.cube(), environment().context.arithmetic)) {
             ++polygon_;
             work_ += env.costs().geometry_polygon;  // found to lie outside: work all the same
             continue;

@@ -259,7 +259,7 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     }
     if (going()) check_conservation();
     collect(result);
-    if (going() && result.overflowed > 0) result.verdict = Verdict::capacity;
+    if (going() && result.storage.overflowed > 0) result.verdict = Verdict::capacity;
     result.picture = picture_;
     return result;
 }
@@ -287,13 +287,11 @@ void Machine::collect(RunResult& result) const {
     result.precomputation = precomputation_.statistics();
     result.distribution = distribution_.statistics();
     if (exterior_) result.exterior = exterior_->statistics();
+    const Context& context = environment_.context;
+    const VoxelBits each = voxel_bits(context.settings, context.arithmetic.formats(), context.sources.size());
     for (const auto& cell : array_.cells()) {
         const CellStore& store = cell->cell().store();
-        result.voxels += store.voxels.size();
-        result.max_voxels = std::max(result.max_voxels, std::uint64_t(store.voxels.size()));
-        result.occupied_cells += !store.voxels.empty();
-        result.edges += store.edges.size();
-        result.overflowed += store.overflowed;
+        result.storage.add(store, each);
         result.ray_store_peak = std::max(result.ray_store_peak, cell->cell().ray_store().peak());
         result.counters.slot_cycles += cell->cell().ray_store().waiting_cycles(scheduler_.now());
     }

@@ -29,11 +29,7 @@ struct RunResult {
     StageStatistics distribution;
     StageStatistics exterior;
     Counters counters;
-    std::uint64_t voxels = 0;
-    std::uint64_t max_voxels = 0;
-    std::uint64_t occupied_cells = 0;
-    std::uint64_t edges = 0;
-    std::uint64_t overflowed = 0;
+    StorageCounts storage;
     int ray_store_peak = 0;
     double ray_store_mean = 0;  ///< over all cells and the trace phase
     struct BufferUse {

@@ -7,7 +7,7 @@ void Precomputation::take(LoadItem& item) {
         item_ = &item;  // broadcast: passed on in its place
         return;
     }
-    trapezes_ = precompute(item.polygon);
+    trapezes_ = precompute(item.polygon, environment().context.arithmetic);
     next_ = 0;
     environment().pools.loads.give_back(&item);
 }

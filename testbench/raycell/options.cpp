@@ -119,10 +119,26 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
         "a ray per hit and source; a bit per voxel and source before tracing; the same when first hit");
     table.choice("exterior", p.exterior, {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},
                  "rays that leave the cube: traced on by the exterior processors, or lost");
-    static int exact = 0;  // the only arithmetic so far; named so that configurations say what they ran with
-    table.choice("arithmetic", exact, {{"exact", 0}}, "numbers of the cell: double precision");
-    table.number("word-bits", m.word_bits, 8, 32,
-                 "bits of a word in messages and voxels, for link cycles and storage");
+    NumberSettings& n = p.numbers;
+    table.choice("arithmetic", n.arithmetic, {{"fixed", Numbers::fixed}, {"exact", Numbers::exact}},
+                 "numbers of the cell: words of word-bits, or double precision");
+    table.number("word-bits", n.word_bits, 8, 32, "bits of a word in messages, voxels and the ALU");
+    table.choice("rounding", n.rounding, {{"nearest", Rounding::nearest}, {"truncate", Rounding::truncate}},
+                 "words: to the nearest, ties to even, or cut off");
+    const std::vector<std::pair<std::string, Iteration>> iterations = {
+        {"newton", Iteration::newton}, {"table", Iteration::table}, {"rounded", Iteration::rounded}};
+    OperatorSettings& o = n.operators;
+    table.choice("reciprocal", o.reciprocal, iterations,
+                 "1/x: a table and one Newton step, the table alone, or digit by digit; cycles in --cost");
+    table.choice("root", o.root, iterations, "1/sqrt(x), in the same ways");
+    table.choice("power", o.power,
+                 {{"tables", PowerMethod::tables},
+                  {"schlick", PowerMethod::schlick},
+                  {"rounded", PowerMethod::rounded}},
+                 "Phong's power: by log2 and exp2 tables, Schlick's fraction, or digit by digit");
+    table.number("reciprocal-table", o.reciprocal_table, 4, 4096, "its entries, a power of two");
+    table.number("root-table", o.root_table, 4, 4096, "its entries, a power of two");
+    table.number("power-table", o.power_table, 4, 4096, "entries of each of its two tables, a power of two");
     table.number("ray-store", m.ray_store, 1, 1024, "M, rays that a cell can store, slots");
     table.number("buffer", m.buffer_depth, 1, 1024, "depth of every buffer, messages");
     table.choice("networks", m.networks,
@@ -140,8 +156,8 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62,
                  "timed engine: stop after so many cycles; 0: never");
     table.number("voxel-capacity", p.voxel_capacity, 0, 1000000, "voxels that a cell can hold; 0: unlimited");
-    table.number("normal-offset", p.normal_offset, 0.0, 1.0,
-                 "start of secondary rays off their polygon, cells");
+    table.number("normal-offset", p.normal_offset, -1.0, 1.0,
+                 "start of secondary rays off their polygon, cells; negative: what suits the arithmetic");
     table.number("exterior-processors", m.exterior_processors, 1, 1000000, "processors outside the cube");
     table.number("exterior-latency", m.exterior_latency, 1, 1000000000,
                  "cycles that one of them takes for a ray");

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cmath>
 #include <fstream>
 #include <iostream>
 
@@ -13,6 +12,7 @@
 #include "model/untimed.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/machine_run.hpp"
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/picture_file.hpp"
 #include "testbench/raycell/report_json.hpp"
@@ -39,39 +39,6 @@ std::uint64_t memory_bytes() {
     std::uint64_t resident = 0;
     std::ifstream("/proc/self/statm") >> pages >> resident;
     return resident * std::uint64_t(sysconf(_SC_PAGESIZE));
-}
-
-/// What a process can still get, the page cache included; free pages alone where the system doesn't say.
-double available_bytes() {
-    std::ifstream file("/proc/meminfo");
-    std::string key;
-    double kilobytes = 0;
-    std::string unit;
-    while (file >> key >> kilobytes >> unit) {
-        if (key == "MemAvailable:") return kilobytes * 1024;
-    }
-    return double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
-}
-
-/// A machine that can't be held in memory is refused before it is built.
-void check_memory(const RenderOptions& options) {
-    constexpr double bytes_per_cell_module = 10e3;
-    constexpr double bytes_per_untimed_cell = 200;
-    const double each = options.engine == Engine::timed ? bytes_per_cell_module : bytes_per_untimed_cell;
-    const double needed = each * options.picture.width * options.picture.height;
-    const double there = available_bytes();
-    if (needed > there) {
-        throw UsageError("--cells: " + std::to_string(std::llround(needed / 1e9)) +
-                         " GB would be needed for so many cells, " +
-                         std::to_string(std::llround(there / 1e9)) +
-                         " GB are free; expected a smaller array");
-    }
-}
-
-void show_progress(const RunProgress& p) {
-    std::cerr << "\r" << p.phase << ": cycle " << p.cycle << ", " << p.done << " of " << p.all
-              << (std::string(p.phase) == "load" ? " cells loaded, " : " pixels done, ") << p.hops << " hops"
-              << std::flush;
 }
 
 struct Run {
@@ -156,21 +123,17 @@ Run run_untimed(const RenderOptions& options, const CellScene& scene, const Exte
     result.geometry.items = machine.loaded().polygons;
     result.precomputation.items = machine.loaded().trapezes;
     result.distribution.items = machine.loaded().spans;
+    result.storage = machine.storage();
     run.cells_csv = "x,y,voxels,edges\n";
     std::size_t index = 0;
     for (const CellStore& store : machine.cells()) {
-        result.voxels += store.voxels.size();
-        result.max_voxels = std::max(result.max_voxels, std::uint64_t(store.voxels.size()));
-        result.occupied_cells += !store.voxels.empty();
-        result.edges += store.edges.size();
-        result.overflowed += store.overflowed;
         const auto width = std::size_t(options.picture.width);
         run.cells_csv += std::to_string(index % width) + "," + std::to_string(index / width) + "," +
                          std::to_string(store.voxels.size()) + "," + std::to_string(store.edges.size()) +
                          "\n";
         ++index;
     }
-    if (result.overflowed > 0) result.verdict = Verdict::capacity;
+    if (result.storage.overflowed > 0) result.verdict = Verdict::capacity;
     return run;
 }
 
@@ -213,40 +176,14 @@ void summarise(const RenderOptions& options, const Json& json) {
     std::cout << "picture: " << options.prefix << ".png\n";
 }
 
-int exit_code(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::completed:
-            return exit_done;
-        case Verdict::deadlock:
-        case Verdict::livelock:
-            return exit_stuck;
-        case Verdict::cycle_limit:
-        case Verdict::capacity:
-            return exit_limit;
-    }
-    return exit_usage;
-}
-
-void explain(const RunResult& result) {
-    if (result.verdict == Verdict::completed) return;
-    std::cerr << "raycell: verdict " << name_of(result.verdict);
-    if (result.verdict == Verdict::capacity) {
-        std::cerr << ": " << result.overflowed << " voxels did not fit (--voxel-capacity)";
-    }
-    std::cerr << '\n';
-    constexpr std::size_t shown = 10;
-    for (std::size_t i = 0; i < result.report.size() && i < shown; ++i)
-        std::cerr << "  " << result.report[i] << '\n';
-    if (result.report.size() > shown) {
-        std::cerr << "  ... " << result.report.size() << " in all, see deadlock.report in the JSON\n";
-    }
-}
-
 int run(const RenderOptions& options, const OptionTable& table) {
     check_output(options.prefix);
     check_memory(options);
     const auto start = Clock::now();
     const CellScene scene = read_and_place(options);
+    for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
+        std::cerr << options.scene << ": warning: " << warning << '\n';
+    }
     const bool exterior =
         options.picture.exterior == ExteriorMode::host && options.picture.stage == RunStage::trace;
     std::unique_ptr<TruthRenderer> whole;

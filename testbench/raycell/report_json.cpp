@@ -1,5 +1,6 @@
 #include "testbench/raycell/report_json.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace raycell {
@@ -29,8 +30,9 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
             const MachineSettings& machine) {
     const Counters& c = result.counters;
     const Cycle total = result.load_cycles + result.precast_cycles + result.trace_cycles;
-    const VoxelBits bits = voxel_bits(picture, machine.word_bits, scene.sources.size());
-    const double edges_each = result.voxels > 0 ? double(result.edges) / double(result.voxels) : 0;
+    const Formats formats(picture.numbers.word_bits, picture.numbers.rounding, extent_of(scene.frame));
+    const StorageCounts& storage = result.storage;
+    const double stored = double(std::max<std::uint64_t>(storage.voxels, 1));
     Json json;
     json["verdict"] = name_of(result.verdict);
     json["cycles"] = {{"load", result.load_cycles},
@@ -62,15 +64,25 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                           {"destroyed", c.rays_destroyed}}},
                         {"answers", {{"sent", c.answers_sent}, {"delivered", c.answers_delivered}}},
                         {"load", {{"sent", c.loads_sent}, {"delivered", c.loads_delivered}}}};
-    json["voxels"] = {
-        {"stored", result.voxels},
-        {"max_per_cell", result.max_voxels},
-        {"mean_per_occupied_cell",
-         result.occupied_cells > 0 ? double(result.voxels) / double(result.occupied_cells) : 0.0},
-        {"occupied_cells", result.occupied_cells},
-        {"bits_each", bits.base + edges_each * bits.per_edge},
-        {"edges_each", edges_each},
-        {"overflowed", result.overflowed}};
+    json["voxels"] = {{"stored", storage.voxels},
+                      {"max_per_cell", storage.max_voxels},
+                      {"mean_per_occupied_cell",
+                       double(storage.voxels) / double(std::max<std::uint64_t>(storage.occupied_cells, 1))},
+                      {"occupied_cells", storage.occupied_cells},
+                      {"bits_each", double(storage.bits) / stored},
+                      {"edges_each", double(storage.edges) / stored},
+                      {"bits_total", storage.bits},
+                      {"max_bits_per_cell", storage.max_cell_bits},
+                      {"overflowed", storage.overflowed}};
+    const MessageBits messages = message_bits(picture, machine, formats);
+    json["message_bits"] = {{"ray", messages.ray},
+                            {"shadow_ray", messages.shadow_ray},
+                            {"intensity", messages.intensity},
+                            {"verdict", messages.verdict},
+                            {"span", messages.span},
+                            {"trapeze", messages.trapeze}};
+    json["formats"] = Json::object();
+    for (const auto& [name, format] : formats.names()) json["formats"][name] = format;
     json["ray_store"] = {
         {"capacity", machine.ray_store}, {"peak", result.ray_store_peak}, {"mean", result.ray_store_mean}};
     json["buffers"] = {{"depth", machine.buffer_depth}, {"peak", Json::object()}, {"mean", Json::object()}};

@@ -32,13 +32,22 @@ Drawn draw(std::uint64_t seed) {
     s.voxel_capacity = random.chance(0.15) ? random.whole(1, 6) : 0;
     s.stage = random.chance(0.05) ? RunStage::load : RunStage::trace;
     s.display = random.chance(0.1) ? Display::gouraud : Display::phong;
+    NumberSettings& n = s.numbers;
+    n.arithmetic = random.chance(0.25) ? Numbers::exact : Numbers::fixed;
+    n.word_bits = random.whole(8, 32);
+    n.rounding = Rounding(random.whole(0, 1));
+    n.operators.reciprocal = Iteration(random.whole(0, 2));
+    n.operators.root = Iteration(random.whole(0, 2));
+    n.operators.power = PowerMethod(random.whole(0, 2));
+    n.operators.reciprocal_table = 1 << random.whole(2, 12);
+    n.operators.root_table = 1 << random.whole(2, 12);
+    n.operators.power_table = 1 << random.whole(2, 12);
     MachineSettings& m = drawn.machine;
     m.buffer_depth = random.whole(1, 4);
     m.networks = random.chance(0.5) ? Networks::half : Networks::quadrant;
     m.slots = Slots::reserved;
     m.recovery = Recovery::postpone;
     m.link_bits = random.chance(0.3) ? random.whole(1, 8) : random.whole(9, 300);
-    m.word_bits = random.whole(8, 32);
     m.exterior_processors = random.whole(1, 70);
     m.exterior_latency = random.whole(1, 400);
     m.seed = std::uint64_t(random.whole(1, 1000));
@@ -47,7 +56,7 @@ Drawn draw(std::uint64_t seed) {
     }
     CellScene lights;  // how many generations may have to wait depends on there being sources at all
     lights.sources.resize(1);
-    const int least = std::max(waiting_generations({lights, s}), 1);
+    const int least = std::max(waiting_generations(Context(lights, s)), 1);
     m.ray_store = random.whole(least, 16);
     if (random.chance(0.4)) m.ray_store = least;
     if (random.chance(0.25)) {  // no promise: it may get stuck, but if it ends, then with the same picture
@@ -61,7 +70,8 @@ Drawn draw(std::uint64_t seed) {
                  std::to_string(m.ray_store) + ", buffers " + std::to_string(m.buffer_depth) + ", networks " +
                  std::to_string(int(m.networks)) + ", hit " + std::to_string(int(s.hit)) + ", shadows " +
                  std::to_string(int(s.shadows)) + ", exterior " + std::to_string(int(s.exterior)) +
-                 ", generations " + std::to_string(s.max_depth);
+                 ", generations " + std::to_string(s.max_depth) + ", arithmetic " +
+                 std::to_string(int(n.arithmetic)) + " of " + std::to_string(n.word_bits) + " bits";
     return drawn;
 }
 
@@ -81,10 +91,10 @@ TEST_P(TimedPicture, EqualsTheUntimedOneBitForBit) {
         EXPECT_FALSE(result.report.empty());
         return;
     }
-    EXPECT_EQ(name_of(result.verdict), std::string(result.overflowed > 0 ? "capacity" : "completed"));
+    EXPECT_EQ(name_of(result.verdict), std::string(result.storage.overflowed > 0 ? "capacity" : "completed"));
     EXPECT_EQ(image_hash(result.picture), image_hash(golden));
-    EXPECT_EQ(result.voxels, untimed.loaded().voxels);
-    EXPECT_EQ(result.overflowed, untimed.loaded().overflowed);
+    EXPECT_EQ(result.storage.voxels, untimed.loaded().voxels);
+    EXPECT_EQ(result.storage.overflowed, untimed.loaded().overflowed);
     EXPECT_LE(result.ray_store_peak, drawn.machine.ray_store);
     // Invariant 3: nothing is lost on the way.
     const Counters& c = result.counters;

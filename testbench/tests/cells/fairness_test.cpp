@@ -43,7 +43,7 @@ struct LoneCell {
             const Stream& stream = streams[i];
             Ray ray;
             ray.position = stream.position;
-            set_direction(ray, stream.direction);
+            set_direction(ray, stream.direction, environment->context.arithmetic);
             Link& link = *in[std::size_t(stream.from)];
             const int index = environment->classes.ray(ray);
             Cycle retry = never;

@@ -29,8 +29,10 @@ struct Row {
     MachineSettings machine;
 };
 
-/// Shadow ray: type 3, nine words of 20, polygon 20, address (home 3 + 0, slot 3 + 1, child 6) 13, flags 3.
-constexpr int shadow_ray_bits = 3 + 9 * 20 + 20 + 13 + 3;
+/// Shadow ray: type 3, place (x and y a word, z 3 bits more for depths to 8), direction 3 words, reciprocals
+/// of a word and an exponent of 6, reach 1 word, polygon 20, address (home 3 + 0, slot 3 + 1, child 6) 13,
+/// flags 3.
+constexpr int shadow_ray_bits = 3 + (2 * 20 + 23) + 3 * 20 + 2 * 26 + 20 + 20 + 13 + 3;
 /// Verdict: type 3, address 13.
 constexpr int verdict_bits = 3 + 13;
 
@@ -40,12 +42,12 @@ TEST(TimedCycles, AShadowRayAndItsVerdictTakeTheCyclesOfTheCostTable) {
     ASSERT_EQ(result.verdict, Verdict::completed);
     const int ray_link = (shadow_ray_bits + 19) / 20;
     const int verdict_link = (verdict_bits + 19) / 20;
-    ASSERT_EQ(ray_link, 11);
+    ASSERT_EQ(ray_link, 12);
     ASSERT_EQ(verdict_link, 1);
     // The primary ray starts in cycle 1. One voxel: walk 4, run 2, edge test 8, four edges of 2.
     int t = 1 + (4 + 2 + 8 + 4 * 2);
-    // Set-up 20, linear normal 12, view of one source 16.
-    t += 20 + 12 + 16;
+    // Set-up 20, linear normal 7 + 1/sqrt 5, view of one source 11 + 1/sqrt 5, start of its ray 2 · 1/x 4.
+    t += 20 + 12 + 16 + 8;
     // The shadow ray passes the voxel that it leaves: walk 4, run 2. Then the link.
     t += (4 + 2) + ray_link;
     // Six empty cells: walk 4 and the link; in the eighth it ends after its walk step.
@@ -69,7 +71,7 @@ TEST(TimedCycles, EveryHopOfAReturnCostsTheRouteCyclesOfTheTable) {
     Row row(8);
     row.machine.costs.route_return = 11;
     const RunResult result = row.run();
-    const int before_the_way_back = 1 + 22 + 48 + (6 + 11) + 6 * 15 + 4;
+    const int before_the_way_back = 1 + 22 + 56 + (6 + 12) + 6 * 16 + 4;
     EXPECT_EQ(result.picture.at(0, 0).cycle, std::uint32_t(before_the_way_back + 1 + 6 * (11 + 1) + 11 + 26));
 }
 
@@ -78,13 +80,13 @@ TEST(TimedCycles, APrecastRayTakesAWalkStepAndItsLinkCyclesPerHop) {
     row.settings.shadows = Shadows::precast;
     const RunResult result = row.run();
     ASSERT_EQ(result.verdict, Verdict::completed);
-    // Its address names a voxel in 10 bits instead of a slot in 4: 225 bits, 12 cycles on the link.
+    // Its address names a voxel in 10 bits instead of a slot in 4: 240 bits, 12 cycles on the link.
     // In cell 0: from cycle 1, walk 4 and run 2; the link 12. Six cells of 4 + 12; the eighth ends it,
     // silently, after 4.
     EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 12 + 6 * 16 + 4));
     EXPECT_EQ(result.counters.rays_silent, 1u);
     EXPECT_EQ(result.counters.rays.precast, 1u);
-    // A hit that waits for nothing: test 22, set-up 48, shading 26, without a slot.
+    // A hit that waits for nothing and sends nothing: test 22, set-up 48, shading 26, without a slot.
     EXPECT_EQ(result.picture.at(0, 0).cycle, 1u + 22u + 48u + 26u);
     EXPECT_EQ(result.ray_store_peak, 0);
 }
@@ -92,9 +94,9 @@ TEST(TimedCycles, APrecastRayTakesAWalkStepAndItsLinkCyclesPerHop) {
 TEST(TimedCycles, NarrowLinksTakeLonger) {
     Row row(8);
     row.settings.shadows = Shadows::precast;
-    row.machine.link_bits = 7;  // 225 bits: 33 cycles
+    row.machine.link_bits = 7;  // 240 bits: 35 cycles
     const RunResult result = row.run();
-    EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 33 + 6 * (4 + 33) + 4));
+    EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 35 + 6 * (4 + 35) + 4));
 }
 
 /// A polygon over the whole row, no source.
@@ -108,17 +110,17 @@ struct Loading : Row {
     /// Cycle in which the first cell sees the span, and the last one the end-of-scene mark.
     Cycle expected() const {
         const int columns = 2 * int(std::ceil(std::log2(settings.width)));
-        const int setup = 4, features = 4;  // link cycles of 69 and 76 bits
-        // Geometry, from cycle 1: set-up mark ready in 2 and sent; features wait for the wires until 6,
-        // arrive at 10; the polygon, taken up in 7, needs 1 + 40 and leaves in 48. Type 3, id 20,
-        // plane 102, normals 180 and 4 corners of 3 words: 545 bits, 28 cycles.
-        const int polygon_arrives = 2 + setup + 1 + 1 + 40 + 28;
-        EXPECT_EQ(polygon_arrives, 76);
-        (void)features;
-        // Precomputation 20; a trapeze is 3 + 20 + 240 + 102 + 180 + 243 = 788 bits, 40 cycles.
-        const int trapeze_arrives = polygon_arrives + 20 + 40;
-        // The row cuts its span in 8; it is 3 + 20 + columns + 120 + 102 + 180 + 243 bits.
-        const int span_link = (668 + columns + 19) / 20;
+        // Link cycles of 111 bits (type 3, viewer 102, faces 6) and 104 (type 3, features 101).
+        const int setup = 6;
+        // Geometry, from cycle 1: set-up mark ready in 2 and sent; features wait for the wires until 8,
+        // arrive at 14; the polygon, taken up in 9, needs 1 + 40 and leaves in 50. Type 3, id 20,
+        // plane and slack 147, normals 324 and 4 corners of 3 loading words of 36: 926 bits, 47 cycles.
+        const int polygon_arrives = 2 + setup + 1 + 1 + 40 + 47;
+        EXPECT_EQ(polygon_arrives, 97);
+        // Precomputation 20; a trapeze is 3 + 20 + 432 + 147 + 324 + 435 = 1361 bits, 69 cycles.
+        const int trapeze_arrives = polygon_arrives + 20 + 69;
+        // The row cuts its span in 8; it is 3 + 20 + columns + 180 + 147 + 324 + 435 bits.
+        const int span_link = (1109 + columns + 19) / 20;
         const int span_arrives = trapeze_arrives + 8 + span_link;
         // Each cell makes its voxel in 12 and passes the span on; the last one drops it.
         const int span_done = span_arrives + (settings.width - 1) * (12 + span_link) + 12;
@@ -133,7 +135,7 @@ TEST(TimedCycles, OneSpanIsLoadedCellByCellInOneCell) {
     const Cycle expected = row.expected();
     const RunResult result = row.run();
     EXPECT_EQ(result.load_cycles, expected);
-    EXPECT_EQ(result.voxels, 1u);
+    EXPECT_EQ(result.storage.voxels, 1u);
 }
 
 TEST(TimedCycles, OneSpanIsLoadedCellByCellInEight) {
@@ -141,7 +143,7 @@ TEST(TimedCycles, OneSpanIsLoadedCellByCellInEight) {
     const Cycle expected = row.expected();
     const RunResult result = row.run();
     EXPECT_EQ(result.load_cycles, expected);
-    EXPECT_EQ(result.voxels, 8u);
+    EXPECT_EQ(result.storage.voxels, 8u);
     EXPECT_EQ(result.distribution.items, 1u);
     EXPECT_EQ(result.precomputation.items, 1u);
     EXPECT_EQ(result.geometry.items, 1u);

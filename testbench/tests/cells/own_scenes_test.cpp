@@ -41,6 +41,7 @@ TEST_P(OwnScene, CountsEveryHopForItsPixelAndEveryRayOnce) {
 TEST_P(OwnScene, SeesTheSameFirstPolygonsAsTheTruth) {
     PictureSettings settings;
     settings.width = settings.height = 48;
+    settings.numbers.arithmetic = Numbers::exact;
     const auto placed = place_own_scene(GetParam(), settings);
     UntimedMachine machine(placed->scene, settings, placed->exterior.get());
     const Picture picture = machine.render();

@@ -46,13 +46,9 @@ Exact search(const CellScene& scene, const dvec3& origin, const dvec3& direction
 }
 
 void expect_exact(const CellScene& scene, Random& random, int rays) {
-    PictureSettings settings;
-    settings.width = scene.frame.width;
-    settings.height = scene.frame.height;
-    settings.depth_levels = scene.frame.depth_levels;
-    settings.exterior = ExteriorMode::none;
-    const auto cells = load_array(scene, settings);
-    const Context context{scene, settings};
+    const PictureSettings settings = shapes::settings_for(scene, HitTest::edge, Numbers::exact);
+    const Context context(scene, settings);
+    const auto cells = load_array(scene, settings, context.arithmetic);
     int doubtful = 0;
     for (int i = 0; i < rays; ++i) {
         const dvec3 share{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
@@ -65,7 +61,7 @@ void expect_exact(const CellScene& scene, Random& random, int rays) {
         }
         int x = 0;
         int y = 0;
-        const Ray ray = walker::ray_at(scene, origin, direction, x, y);
+        const Ray ray = walker::ray_at(context, origin, direction, x, y);
         const auto found = walker::walk(cells, context, ray, x, y);
         std::ostringstream text;
         text.precision(17);
@@ -140,27 +136,34 @@ TEST(Ladder, EdgeIsExactOnConcavePolygonsAlongTheCellBorders) {
     }
 }
 
+/// Calls `check` for every rung in both arithmetics.
+void at_every_rung(const CellScene& scene,
+                   const std::function<void(const Context&, const std::vector<CellStore>&)>& check) {
+    for (const Numbers numbers : shapes::both_arithmetics) {
+        for (const HitTest rung : shapes::every_rung) {
+            const PictureSettings settings = shapes::settings_for(scene, rung, numbers);
+            const Context context(scene, settings);
+            SCOPED_TRACE(std::string(context.arithmetic.exact() ? "exact" : "fixed") + ", rung " +
+                         std::to_string(int(rung)));
+            check(context, load_array(scene, settings, context.arithmetic));
+        }
+    }
+}
+
 TEST(Ladder, ARayCannotHitThePolygonThatItLeaves) {
     CellScene scene = shapes::empty_cube(4, 4, 8, 64);
     hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
     hand_made::add_rectangle(scene, 0, {0, 0, 5}, {4, 0, 0}, {0, 4, 0});
-    for (const HitTest rung :
-         {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
-        PictureSettings settings;
-        settings.width = settings.height = 4;
-        settings.depth_levels = 64;
-        settings.hit = rung;
-        const auto cells = load_array(scene, settings);
-        const Context context{scene, settings};
+    at_every_rung(scene, [](const Context& context, const std::vector<CellStore>& cells) {
         int x = 0;
         int y = 0;
-        Ray ray = walker::ray_at(scene, {1.3, 1.4, 3}, glm::normalize(dvec3(0.1, 0.2, 1)), x, y);
+        Ray ray = walker::ray_at(context, {1.3, 1.4, 3}, glm::normalize(dvec3(0.1, 0.2, 1)), x, y);
         ray.fresh = true;
         ray.leaves = 0;
         const auto found = walker::walk(cells, context, ray, x, y);
-        ASSERT_TRUE(found) << "rung " << int(rung);
+        ASSERT_TRUE(found);
         EXPECT_EQ(found->polygon, 1u);
-    }
+    });
 }
 
 TEST(Ladder, EqualDistancesGoToTheLowerId) {
@@ -168,38 +171,32 @@ TEST(Ladder, EqualDistancesGoToTheLowerId) {
     hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
     hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
     std::swap(scene.polygons[0], scene.polygons[1]);  // stored the other way round
-    for (const HitTest rung :
-         {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
-        PictureSettings settings;
-        settings.width = settings.height = 4;
-        settings.depth_levels = 64;
-        settings.hit = rung;
-        const auto cells = load_array(scene, settings);
+    at_every_rung(scene, [](const Context& context, const std::vector<CellStore>& cells) {
         int x = 0;
         int y = 0;
-        const Ray ray = walker::ray_at(scene, {1.5, 1.5, 0}, {0, 0, 1}, x, y);
-        const auto found = walker::walk(cells, {scene, settings}, ray, x, y);
+        const Ray ray = walker::ray_at(context, {1.5, 1.5, 0}, {0, 0, 1}, x, y);
+        const auto found = walker::walk(cells, context, ray, x, y);
         ASSERT_TRUE(found);
-        EXPECT_EQ(found->polygon, 0u) << "rung " << int(rung);
-    }
+        EXPECT_EQ(found->polygon, 0u);
+    });
 }
 
 TEST(Ladder, AShadowRayIsBlockedBeforeItsSourceOnly) {
     CellScene scene = shapes::empty_cube(4, 4, 8, 64);
     hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
-    PictureSettings settings;
-    settings.width = settings.height = 4;
-    settings.depth_levels = 64;
-    const auto cells = load_array(scene, settings);
-    const Context context{scene, settings};
-    for (const double reach : {2.9, 3.0, 3.1}) {
-        int x = 0;
-        int y = 0;
-        Ray ray = walker::ray_at(scene, {1.5, 1.5, 0}, {0, 0, 1}, x, y);
-        ray.kind = RayKind::shadow;
-        ray.reach = reach;
-        const Visit visit = visit_cell(cells[5], ray, context);
-        EXPECT_EQ(visit.event, reach > 3 ? Visit::Event::hit : Visit::Event::reaches_source) << reach;
+    for (const Numbers numbers : shapes::both_arithmetics) {
+        const PictureSettings settings = shapes::settings_for(scene, HitTest::edge, numbers);
+        const Context context(scene, settings);
+        const auto cells = load_array(scene, settings, context.arithmetic);
+        for (const double reach : {2.9, 3.0, 3.1}) {
+            int x = 0;
+            int y = 0;
+            Ray ray = walker::ray_at(context, {1.5, 1.5, 0}, {0, 0, 1}, x, y);
+            ray.kind = RayKind::shadow;
+            ray.reach = context.arithmetic.hold_reach(reach);
+            const Visit visit = visit_cell(cells[5], ray, context);
+            EXPECT_EQ(visit.event, reach > 3 ? Visit::Event::hit : Visit::Event::reaches_source) << reach;
+        }
     }
 }
 

@@ -12,6 +12,8 @@ namespace {
 
 using property::Random;
 
+const Arithmetic& exact = exact_arithmetic();
+
 struct Step {
     int x;
     int y;
@@ -19,10 +21,10 @@ struct Step {
 std::vector<Step> cells_of(Ray ray, int x, int y, int hops) {
     std::vector<Step> cells{{x, y}};
     for (int i = 0; i < hops; ++i) {
-        const Crossing crossing = next_crossing(ray);
+        const Crossing crossing = next_crossing(ray, exact);
         x += step_x(crossing.side);
         y += step_y(crossing.side);
-        cross(ray, crossing);
+        cross(ray, crossing, exact);
         cells.push_back({x, y});
     }
     return cells;
@@ -36,7 +38,7 @@ TEST(Walk, VisitsEveryCellThatTheRayIsInAndNoOther) {
         const dvec3 direction = shapes::sloped_direction(random);
         Ray ray;
         ray.position = origin;
-        set_direction(ray, direction);
+        set_direction(ray, direction, exact);
         if (direction.x == 0 && direction.y == 0) continue;
         const auto visited = cells_of(ray, 0, 0, 60);
         // Brute force: the cells between consecutive crossings of all grid lines.
@@ -82,18 +84,18 @@ TEST(Walk, PositionPlusCellIsOriginPlusDistanceAfterAThousandHops) {
         Ray ray;
         ray.position = origin;
         ray.reach = 1e9;
-        set_direction(ray, direction);
+        set_direction(ray, direction, exact);
         if (direction.x == 0 && direction.y == 0) continue;
         int x = 0;
         int y = 0;
         double t = 0;
         for (int hop = 0; hop < 1000; ++hop) {
-            const Crossing crossing = next_crossing(ray);
+            const Crossing crossing = next_crossing(ray, exact);
             ASSERT_GE(crossing.t, 0);
             x += step_x(crossing.side);
             y += step_y(crossing.side);
             t += crossing.t;
-            cross(ray, crossing);
+            cross(ray, crossing, exact);
             ASSERT_GE(ray.position.x, 0);
             ASSERT_LE(ray.position.x, 1);
             ASSERT_GE(ray.position.y, 0);
@@ -112,11 +114,11 @@ TEST(Walk, AnAxialRayNeverCrosses) {
     Ray ray;
     ray.position = {0.5, 0.5, 3};
     for (const dvec3 direction : {dvec3(0, 0, 1), dvec3(0, 0, -1), dvec3(1e-13, -1e-13, 1)}) {
-        set_direction(ray, direction);
-        EXPECT_EQ(next_crossing(ray).t, std::numeric_limits<double>::infinity());
-        EXPECT_EQ(border_crossing(ray).side, Side::east);
+        set_direction(ray, direction, exact);
+        EXPECT_EQ(next_crossing(ray, exact).t, std::numeric_limits<double>::infinity());
+        EXPECT_EQ(border_crossing(ray, exact).side, Side::east);
         const dvec3 before = ray.position;
-        cross(ray, border_crossing(ray));
+        cross(ray, border_crossing(ray, exact), exact);
         EXPECT_EQ(ray.position, before);
         EXPECT_EQ(ray.direction.x, 0);
     }
@@ -127,7 +129,7 @@ TEST(Walk, ThroughCornersItTakesXFirstAndLosesNoGround) {
         for (const double sy : {1.0, -1.0}) {
             Ray ray;
             ray.position = {0.5, 0.5, 0};
-            set_direction(ray, glm::normalize(dvec3(sx, sy, 0.5)));
+            set_direction(ray, glm::normalize(dvec3(sx, sy, 0.5)), exact);
             const auto cells = cells_of(ray, 0, 0, 20);
             for (int i = 0; i <= 20; ++i) {
                 EXPECT_EQ(cells[std::size_t(i)].x, int(sx) * ((i + 1) / 2));
@@ -152,19 +154,40 @@ TEST(Messages, HaveTheBitsOfTheirFields) {
     picture.width = 128;
     picture.height = 64;
     machine.ray_store = 8;
-    const MessageBits bits = message_bits(picture, machine);
-    const int address = 7 + 6 + 3 + 1 + 6;  // home, slot, child
-    EXPECT_EQ(bits.ray, 3 + 9 * 20 + 20 + 6 + address + 3);
+    const ArrayExtent extent{128, 64, 256, 0.25};
+    const Formats formats(20, Rounding::nearest, extent);
+    const MessageBits bits = message_bits(picture, machine, formats);
+    const int address = 7 + 6 + 3 + 1 + 6;      // home, slot, child
+    const int place = 20 + 20 + (8 + 20);       // z has 8 bits more, for depths to 256
+    const int way = 3 * 20 + 2 * (20 + 6);      // direction; reciprocals with exponents
+    const int weight = 20;                      // or the reach
+    const int word = 36;                        // of loading
+    const int plane = 3 * word + 2 + 1 + word;  // slopes and offset, axis and sign; slack
+    const int edges = 4 * 3 * word + 3;         // up to four, and how many
+    const int normals = 3 * 3 * word;
+    EXPECT_EQ(bits.ray, 3 + place + way + weight + 20 + 6 + address + 3);
+    EXPECT_EQ(bits.shadow_ray, bits.ray - 6) << "without its generation";
     EXPECT_EQ(bits.verdict, 3 + address);
     EXPECT_EQ(bits.intensity, 3 + 3 * 20 + address);
-    EXPECT_LE(bits.shadow_ray, bits.ray);
-    EXPECT_EQ(bits.setup(2) - bits.setup(0), 2 * 6 * 20);
-    // Each grows with the word.
-    machine.word_bits = 24;
-    const MessageBits wider = message_bits(picture, machine);
+    EXPECT_EQ(bits.span, 3 + 20 + 2 * 7 + 5 * word + plane + normals + edges);
+    EXPECT_EQ(bits.trapeze, 3 + 20 + 4 * 3 * word + plane + normals + edges);
+    EXPECT_EQ(bits.polygon, 3 + 20 + plane + normals);
+    EXPECT_EQ(bits.vertex, 3 * word);
+    EXPECT_EQ(bits.features, 3 + 6 * 12 + 12 + 16 + 1);
+    EXPECT_EQ(bits.viewer, 3 + 3 * 32 + 6 + 6);
+    EXPECT_EQ(bits.setup(2) - bits.setup(0), 2 * (3 * 32 + 6 + 3 * 20));
+    // Each grows with the word: a ray holds three words of place, three of direction, two reciprocals,
+    // weight.
+    const MessageBits wider = message_bits(picture, machine, Formats(24, Rounding::nearest, extent));
     EXPECT_EQ(wider.ray - bits.ray, 9 * 4);
     EXPECT_EQ(wider.verdict, bits.verdict);
-    EXPECT_GT(wider.span, bits.span);
+    EXPECT_EQ(wider.span - bits.span, (5 + 4 + 9 + 12) * 4);
+    // Verdicts on voxels name one of 1024 instead of a slot.
+    picture.shadows = Shadows::memo;
+    EXPECT_EQ(message_bits(picture, machine, formats).verdict, bits.verdict + 10 - 4);
+    // Gouraud: an intensity and its increment; corners have one each, as increments again, of a side.
+    picture.display = Display::gouraud;
+    EXPECT_EQ(message_bits(picture, machine, formats).span, bits.span + 6 * word);
 }
 
 TEST(Messages, AnAnswerGoesWhereItsRayCameFrom) {
@@ -193,9 +216,9 @@ std::set<int> classes_seen(Networks networks, Side side) {
     for (int i = 0; i < 2000; ++i) {
         Ray ray;
         ray.position = {random.uniform(0, 1), random.uniform(0, 1), 1};
-        set_direction(ray, shapes::sloped_direction(random));
+        set_direction(ray, shapes::sloped_direction(random), exact);
         const bool axial = ray.inverse_x == 0 && ray.inverse_y == 0;
-        const Crossing crossing = axial ? border_crossing(ray) : next_crossing(ray);
+        const Crossing crossing = axial ? border_crossing(ray, exact) : next_crossing(ray, exact);
         if (crossing.side == side) seen.insert(classes.ray(ray));
     }
     return seen;
@@ -222,10 +245,10 @@ TEST(BufferClasses, ALinkHasABufferForJustTheRaysThatCrossIt) {
 
 TEST(BufferClasses, ARayWithoutXGoesWithThePositiveHalf) {
     Ray ray;
-    set_direction(ray, {0, -1, 0});
+    set_direction(ray, {0, -1, 0}, exact);
     EXPECT_EQ(buffer_classes(Networks::half).ray(ray), 0);
     EXPECT_EQ(buffer_classes(Networks::quadrant).ray(ray), 2);
-    set_direction(ray, {-1e-13, 1, 0});  // too small to cross: no western ray
+    set_direction(ray, {-1e-13, 1, 0}, exact);  // too small to cross: no western ray
     EXPECT_EQ(buffer_classes(Networks::half).ray(ray), 0);
 }
 

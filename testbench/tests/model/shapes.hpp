@@ -135,6 +135,21 @@ inline CellScene empty_cube(int width, int height, double depth, int levels) {
     return scene;
 }
 
+/// What a scene in its own frame is loaded with, without an exterior.
+inline PictureSettings settings_for(const CellScene& scene, HitTest rung, Numbers arithmetic) {
+    PictureSettings settings;
+    settings.width = scene.frame.width;
+    settings.height = scene.frame.height;
+    settings.depth_levels = scene.frame.depth_levels;
+    settings.hit = rung;
+    settings.exterior = ExteriorMode::none;
+    settings.numbers.arithmetic = arithmetic;
+    return settings;
+}
+constexpr HitTest every_rung[] = {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask,
+                                  HitTest::edge};
+constexpr Numbers both_arithmetics[] = {Numbers::fixed, Numbers::exact};
+
 /// The six faces of centre ± the axes times `half`; fronts outwards, or inwards.
 inline void add_block(CellScene& scene, const dvec3& centre, const Axes& axes, const dvec3& half,
                       bool inward = false) {
@@ -236,6 +251,25 @@ inline Closed room(Random& random) {
         return low + share * (high - low);
     };
     return closed;
+}
+
+/// A room with a mirror ball, a glass block and two sources, seen by a viewer at infinity.
+inline CellScene still_life(Random& random) {
+    CellScene scene =
+        empty_cube(random.whole(1, 20), random.whole(1, 20), random.uniform(8, 20), random.whole(8, 512));
+    scene.background = {0.1, 0.2, 0.3};
+    const std::uint32_t mirror = hand_made::add_object(scene, hand_made::mirror(0.9));
+    const std::uint32_t glass = hand_made::add_object(scene, hand_made::glass(0.8, 1.4));
+    const dvec3 size = scene.frame.cube().high;
+    hand_made::add_rectangle(scene, 0, {0, 0, size.z * 0.95}, {size.x, 0, 0}, {0, size.y, 0});
+    hand_made::add_ball(scene, mirror, size * dvec3(0.3, 0.6, 0.5), 9, 6,
+                        [&](const dvec3&) { return 0.2 * size.x; });
+    const std::size_t first = scene.polygons.size();
+    add_block(scene, size * dvec3(0.7, 0.4, 0.5), turned(random), size * dvec3(0.12, 0.12, 0.1));
+    for (std::size_t i = first; i < scene.polygons.size(); ++i) scene.polygons[i].object = glass;
+    scene.sources.push_back({size * dvec3(0.2, 0.1, 0.05), dvec3(0.7)});
+    scene.sources.push_back({size * dvec3(0.9, -0.2, 0.3), dvec3(0.4, 0.5, 0.6)});
+    return scene;
 }
 
 /// A direction whose slope dz/dx is log-uniform from 1/1000 to 1000, sometimes 0, sometimes axial, often in a

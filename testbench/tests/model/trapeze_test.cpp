@@ -17,7 +17,7 @@ bool inside(const Trapeze& t, const dvec2& uv) {
 
 /// Points of the polygon's plane are in a trapeze exactly when they are in the polygon, and the areas add up.
 void expect_tiled(const Polygon& polygon, Random& random) {
-    const std::vector<Trapeze> trapezes = precompute(polygon);
+    const std::vector<Trapeze> trapezes = precompute(polygon, exact_arithmetic());
     double area = 0;
     dvec2 low(1e300), high(-1e300);
     const auto outline = shapes::projected(polygon.vertices, polygon.drop);
@@ -96,18 +96,24 @@ TEST(Trapezes, OfAPolygonWithItsVerticesTurnedRoundCoverTheSame) {
         SCOPED_TRACE(property::rerun(seed));
         Random random(seed);
         auto outline = shapes::lift(shapes::star(random, 12, 8), shapes::turned(random), dvec3(10));
-        const std::size_t count = precompute(make_polygon(0, 0, outline)).size();
+        const std::size_t count = precompute(make_polygon(0, 0, outline), exact_arithmetic()).size();
         std::rotate(outline.begin(), outline.begin() + random.whole(1, 11), outline.end());
-        EXPECT_EQ(precompute(make_polygon(0, 0, outline)).size(), count);
+        EXPECT_EQ(precompute(make_polygon(0, 0, outline), exact_arithmetic()).size(), count);
     }
 }
 
 TEST(Trapezes, ARectangleIsOneAndATriangleAtMostTwo) {
-    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {4, 1, 5}, {4, 3, 6}, {1, 3, 6}})).size(), 1u);
-    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {4, 2, 5}, {2, 4, 6}})).size(), 2u);
-    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {4, 1, 5}, {2, 4, 6}})).size(), 1u);
+    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {4, 1, 5}, {4, 3, 6}, {1, 3, 6}}), exact_arithmetic())
+                  .size(),
+              1u);
+    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {4, 2, 5}, {2, 4, 6}}), exact_arithmetic()).size(),
+              2u);
+    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {4, 1, 5}, {2, 4, 6}}), exact_arithmetic()).size(),
+              1u);
     // Corners on straight sides cost cuts, no area.
-    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {2, 1, 5}, {4, 1, 5}, {4, 3, 5}, {1, 3, 5}})).size(),
+    EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {2, 1, 5}, {4, 1, 5}, {4, 3, 5}, {1, 3, 5}}),
+                         exact_arithmetic())
+                  .size(),
               1u);
 }
 

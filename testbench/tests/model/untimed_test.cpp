@@ -8,43 +8,20 @@ namespace {
 
 using property::Random;
 
-/// A room with a mirror ball, a glass block and two sources, seen by a viewer at infinity.
-CellScene still_life(Random& random) {
-    CellScene scene = shapes::empty_cube(random.whole(1, 20), random.whole(1, 20), random.uniform(8, 20),
-                                         random.whole(8, 512));
-    scene.background = {0.1, 0.2, 0.3};
-    const std::uint32_t mirror = hand_made::add_object(scene, hand_made::mirror(0.9));
-    const std::uint32_t glass = hand_made::add_object(scene, hand_made::glass(0.8, 1.4));
-    const dvec3 size = scene.frame.cube().high;
-    hand_made::add_rectangle(scene, 0, {0, 0, size.z * 0.95}, {size.x, 0, 0}, {0, size.y, 0});
-    hand_made::add_ball(scene, mirror, size * dvec3(0.3, 0.6, 0.5), 9, 6,
-                        [&](const dvec3&) { return 0.2 * size.x; });
-    const std::size_t first = scene.polygons.size();
-    shapes::add_block(scene, size * dvec3(0.7, 0.4, 0.5), shapes::turned(random),
-                      size * dvec3(0.12, 0.12, 0.1));
-    for (std::size_t i = first; i < scene.polygons.size(); ++i) scene.polygons[i].object = glass;
-    scene.sources.push_back({size * dvec3(0.2, 0.1, 0.05), dvec3(0.7)});
-    scene.sources.push_back({size * dvec3(0.9, -0.2, 0.3), dvec3(0.4, 0.5, 0.6)});
-    return scene;
-}
-
 PictureSettings settings_of(const CellScene& scene) {
-    PictureSettings settings;
-    settings.width = scene.frame.width;
-    settings.height = scene.frame.height;
-    settings.depth_levels = scene.frame.depth_levels;
-    settings.exterior = ExteriorMode::none;
-    return settings;
+    return shapes::settings_for(scene, HitTest::edge, Numbers::fixed);
 }
 
 TEST(Untimed, MemoAndPrecastGiveTheSamePictureBitForBitAtEveryRung) {
     for (const std::uint64_t seed : property::seeds(1, 25)) {
         SCOPED_TRACE(property::rerun(seed));
         Random random(seed);
-        const CellScene scene = still_life(random);
+        const CellScene scene = shapes::still_life(random);
         PictureSettings settings = settings_of(scene);
         settings.hit = HitTest(random.whole(0, 4));
         settings.normals = Normals(random.whole(0, 1));
+        if (random.chance(0.3)) settings.numbers.arithmetic = Numbers::exact;
+        settings.numbers.word_bits = random.whole(8, 32);
         settings.shadows = Shadows::precast;
         const auto precast = image_hash(UntimedMachine(scene, settings, nullptr).render());
         settings.shadows = Shadows::memo;
@@ -57,9 +34,10 @@ TEST(Untimed, EveryRayEndsAndEveryHopIsCountedForItsPixel) {
     for (const std::uint64_t seed : property::seeds(100, 40)) {
         SCOPED_TRACE(property::rerun(seed));
         Random random(seed);
-        const CellScene scene = still_life(random);
+        const CellScene scene = shapes::still_life(random);
         PictureSettings settings = settings_of(scene);
         settings.shadows = random.chance(0.5) ? Shadows::per_hit : Shadows::memo;
+        if (random.chance(0.3)) settings.numbers.arithmetic = Numbers::exact;
         UntimedMachine machine(scene, settings, nullptr);
         const Picture picture = machine.render();
         const RayCounts& rays = machine.rays();

@@ -12,6 +12,7 @@ using property::Random;
 
 constexpr int width = 20;
 constexpr int height = 18;
+const Arithmetic& exact = exact_arithmetic();
 
 CellScene cube(Random& random) { return shapes::empty_cube(width, height, 24, random.whole(12, 2048)); }
 
@@ -24,12 +25,7 @@ void add_random_polygon(CellScene& scene, Random& random, int corners) {
 }
 
 PictureSettings settings_of(const CellScene& scene, HitTest rung) {
-    PictureSettings settings;
-    settings.width = scene.frame.width;
-    settings.height = scene.frame.height;
-    settings.depth_levels = scene.frame.depth_levels;
-    settings.hit = rung;
-    return settings;
+    return shapes::settings_for(scene, rung, Numbers::exact);
 }
 
 /// A point of the polygon (star-shaped round its centre is not assumed): tried until inside.
@@ -58,7 +54,7 @@ TEST(Voxels, EveryPointOfAPolygonIsHitInItsCellAtEveryRungButDepth) {
         add_random_polygon(scene, random, random.whole(3, 30));
         const Polygon& polygon = scene.polygons[0];
         for (const HitTest rung : {HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
-            const auto cells = load_array(scene, settings_of(scene, rung));
+            const auto cells = load_array(scene, settings_of(scene, rung), exact);
             for (int i = 0; i < 60; ++i) {
                 dvec3 p;
                 if (!point_of(polygon, random, p)) break;
@@ -77,7 +73,7 @@ TEST(Voxels, EveryPointOfAPolygonIsHitInItsCellAtEveryRungButDepth) {
                     Ray ray;
                     ray.position = local - reach * voxel.plane.n;
                     ray.direction = voxel.plane.n;
-                    const bool hit = hit_voxel(store, voxel, ray, 2 * reach, rung, level).has_value();
+                    const bool hit = hit_voxel(store, voxel, ray, 2 * reach, rung, level, exact).has_value();
                     held = held || (in_run && hit);
                 }
                 ASSERT_TRUE(held) << "rung " << int(rung) << ", point (" << p.x << ", " << p.y << ", " << p.z
@@ -100,7 +96,7 @@ TEST(Voxels, AtDepthAreMadeOnlyWhereThePixelCentreIsCovered) {
         const Polygon& polygon = scene.polygons[0];
         if (std::abs(polygon.plane.n.z) < 1e-3) continue;
         const auto outline = shapes::projected(polygon.vertices, 2);
-        const auto cells = load_array(scene, settings_of(scene, HitTest::depth));
+        const auto cells = load_array(scene, settings_of(scene, HitTest::depth), exact);
         for (int y = 0; y < height; ++y) {
             for (int x = 0; x < width; ++x) {
                 const shapes::Place place = shapes::place_of(outline, {x + 0.5, y + 0.5});
@@ -128,15 +124,15 @@ TEST(Spans, AdvancedToACellAgreeWithOneCutFromThere) {
         Random random(seed);
         CellScene scene = cube(random);
         add_random_polygon(scene, random, random.whole(3, 12));
-        for (const Trapeze& trapeze : precompute(scene.polygons[0])) {
+        for (const Trapeze& trapeze : precompute(scene.polygons[0], exact)) {
             for (int row = 0; row < height; ++row) {
-                auto span = cut_span(trapeze, row, width);
+                auto span = cut_span(trapeze, row, width, exact);
                 if (!span) continue;
                 ASSERT_GE(row, trapeze.first_row(scene.frame.height) - 1);
                 EXPECT_LE(0, span->x);
                 EXPECT_LE(span->x, span->last);
                 EXPECT_LT(span->last, width);
-                for (;; advance(*span)) {
+                for (;; advance(*span, exact)) {
                     // Moved by whole cells, the scene is cut at column 0 with the same numbers.
                     Trapeze moved = trapeze;
                     moved.plane.c -= moved.plane.n.x * span->x;
@@ -175,7 +171,7 @@ TEST(Voxels, PiecesOfOnePolygonShareOneVoxelPerCell) {
         add_random_polygon(scene, random, 40);
         add_random_polygon(scene, random, 40);
         for (const HitTest rung : {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::edge}) {
-            for (const CellStore& store : load_array(scene, settings_of(scene, rung))) {
+            for (const CellStore& store : load_array(scene, settings_of(scene, rung), exact)) {
                 ASSERT_LE(store.voxels.size(), 2u) << "rung " << int(rung);
                 for (const Voxel& voxel : store.voxels) {
                     EXPECT_LE(std::size_t(voxel.first_edge) + voxel.edge_count, store.edges.size());
@@ -202,7 +198,7 @@ TEST(Voxels, AreasOfTheCellsAddUpToThatOfThePolygon) {
         CellScene scene = cube(random);
         add_random_polygon(scene, random, random.whole(3, 40));
         double sum = 0;
-        for (const CellStore& store : load_array(scene, settings_of(scene, HitTest::edge))) {
+        for (const CellStore& store : load_array(scene, settings_of(scene, HitTest::edge), exact)) {
             for (const Voxel& voxel : store.voxels) sum += voxel.area;
         }
         EXPECT_NEAR(sum, shapes::area_of(scene.polygons[0].vertices), 1e-6 * std::max(1.0, sum));
@@ -217,11 +213,11 @@ TEST(Voxels, ThatDoNotFitAreCountedOnceEach) {
         for (int i = 0; i < 6; ++i) add_random_polygon(scene, random, random.whole(3, 20));
         PictureSettings settings = settings_of(scene, HitTest::edge);
         LoadCounts all;
-        const auto unlimited = load_array(scene, settings, &all);
+        const auto unlimited = load_array(scene, settings, exact, &all);
         EXPECT_EQ(all.overflowed, 0u);
         settings.voxel_capacity = random.whole(1, 3);
         LoadCounts limited;
-        const auto cells = load_array(scene, settings, &limited);
+        const auto cells = load_array(scene, settings, exact, &limited);
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const std::size_t fits =
                 std::min(unlimited[i].voxels.size(), std::size_t(settings.voxel_capacity));
@@ -234,27 +230,39 @@ TEST(Voxels, ThatDoNotFitAreCountedOnceEach) {
 
 TEST(Voxels, BitsGrowFromRungToRungAndWithTheWord) {
     PictureSettings settings;
+    // A cube of 256 cells has 8 bits before a depth's point.
+    const Formats formats(20, Rounding::nearest, {128, 128, 256, 0.25});
     const auto bits = [&](HitTest rung) {
         settings.hit = rung;
-        return voxel_bits(settings, 20, 2);
+        return voxel_bits(settings, formats, 2);
     };
     settings.normals = Normals::voxel;
-    EXPECT_EQ(bits(HitTest::depth).base, 92 + 10 + 60);  // features, a level of 1024, a normal of three words
+    // Id; features: six of 12 bits, Shine 12, index of refraction 16, mirror; a level of 1024; a normal.
+    EXPECT_EQ(feature_bits(formats), 6 * 12 + 12 + 16 + 1);
+    EXPECT_EQ(bits(HitTest::depth).base, 20 + 101 + 10 + 60);
     EXPECT_EQ(bits(HitTest::interval).base, bits(HitTest::depth).base + 10);
-    EXPECT_EQ(bits(HitTest::plane).base, bits(HitTest::interval).base + 62);
-    EXPECT_GE(bits(HitTest::mask).base, bits(HitTest::plane).base + 64);
+    // Two slopes, an offset; two bits for the axis, one for the sign.
+    EXPECT_EQ(bits(HitTest::plane).base, bits(HitTest::interval).base + 3 * 20 + 3);
+    // 64 sub-cells; four borders of the window, each a 32nd from 0 to 32: five bits as 0 to 31 or 1 to 32.
+    EXPECT_EQ(bits(HitTest::mask).base, bits(HitTest::plane).base + 64 + 4 * 5);
     EXPECT_EQ(bits(HitTest::edge).base, bits(HitTest::plane).base + 8);
-    EXPECT_EQ(bits(HitTest::edge).per_edge, 62);
+    EXPECT_EQ(bits(HitTest::edge).per_edge, 2 * 20 + (8 + 20) + 2);
     EXPECT_EQ(bits(HitTest::mask).per_edge, 0);
     // The paper's voxel has 40 bytes; its own kind of voxel must not need more.
     EXPECT_LE(bits(HitTest::depth).base, 40 * 8);
+    const int bare = bits(HitTest::plane).base;
     settings.shadows = Shadows::precast;
     const int precast = bits(HitTest::plane).base;
+    EXPECT_EQ(precast, bare + 2 + 2 * 20 + (8 + 20));  // a bit for each source, and the voxel's own point
     settings.shadows = Shadows::memo;
     EXPECT_EQ(bits(HitTest::plane).base, precast + 2);
     settings.normals = Normals::linear;
     EXPECT_EQ(bits(HitTest::plane).base, precast + 2 + 120);
-    EXPECT_LT(voxel_bits(settings, 16, 2).base, voxel_bits(settings, 20, 2).base);
+    const Formats narrower(16, Rounding::nearest, {128, 128, 256, 0.25});
+    // Three words of plane, nine of normals, three of the point.
+    EXPECT_EQ(voxel_bits(settings, narrower, 2).base, voxel_bits(settings, formats, 2).base - 4 * 15);
+    const Formats least(8, Rounding::nearest, {128, 128, 256, 0.25});
+    EXPECT_EQ(feature_bits(least), 6 * 8 + 12 + 8 + 1) << "words shorter than 12 bits shorten features too";
 }
 
 }  // namespace

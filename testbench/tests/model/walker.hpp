@@ -20,14 +20,17 @@ struct Found {
     CellHit hit;
 };
 
-/// A ray that starts at a point inside the cube, in array coordinates.
-inline Ray ray_at(const CellScene& scene, const dvec3& origin, const dvec3& direction, int& x, int& y) {
-    x = std::min(std::max(int(std::floor(origin.x)), 0), scene.frame.width - 1);
-    y = std::min(std::max(int(std::floor(origin.y)), 0), scene.frame.height - 1);
+/// A ray that starts at a point inside the cube, in array coordinates; in words, the nearest to it.
+inline Ray ray_at(const Context& context, const dvec3& origin, const dvec3& direction, int& x, int& y) {
+    const Arithmetic& arithmetic = context.arithmetic;
+    x = std::min(std::max(int(std::floor(origin.x)), 0), context.scene.frame.width - 1);
+    y = std::min(std::max(int(std::floor(origin.y)), 0), context.scene.frame.height - 1);
     Ray ray;
-    ray.position = {origin.x - x, origin.y - y, origin.z};
+    ray.position = {arithmetic.hold(arithmetic.formats().unit, origin.x - x),
+                    arithmetic.hold(arithmetic.formats().unit, origin.y - y),
+                    arithmetic.hold(arithmetic.formats().depth, origin.z)};
     ray.fresh = false;
-    set_direction(ray, direction);
+    set_direction(ray, arithmetic.exact() ? direction : arithmetic.normalise(direction), arithmetic);
     return ray;
 }
 
@@ -53,7 +56,7 @@ inline std::optional<Found> walk(const std::vector<CellStore>& cells, const Cont
         x += step_x(visit.crossing.side);
         y += step_y(visit.crossing.side);
         if (x < 0 || y < 0 || x >= frame.width || y >= frame.height) return std::nullopt;
-        cross(ray, visit.crossing);
+        cross(ray, visit.crossing, context.arithmetic);
     }
     throw std::logic_error("a ray never leaves the array");
 }

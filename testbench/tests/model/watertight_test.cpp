@@ -1,73 +1,21 @@
 // No ray may pass through a closed surface, at any slope, from `interval` up (design, section 4).
-#include "shapes.hpp"
-#include "walker.hpp"
+#include "leaks.hpp"
 
 namespace raycell {
 namespace {
 
+using leaks::Score;
 using property::Random;
 using shapes::Closed;
 
 constexpr HitTest watertight_rungs[] = {HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge};
 
 PictureSettings settings_for(const CellScene& scene, HitTest rung) {
-    PictureSettings settings;
-    settings.width = scene.frame.width;
-    settings.height = scene.frame.height;
-    settings.depth_levels = scene.frame.depth_levels;
-    settings.hit = rung;
-    settings.exterior = ExteriorMode::none;
-    return settings;
+    return shapes::settings_for(scene, rung, Numbers::exact);
 }
-
-struct Shot {
-    dvec3 origin;
-    dvec3 direction;
-    double until;  ///< where it is inside the surface: it must have hit something by then
-};
-
-/// Half of the rays start inside and must meet the surface anywhere; half come from the cube's border, where
-/// there is a way, and must meet it before they reach the point inside.
-Shot shoot(const Closed& closed, bool has_outside, Random& random) {
-    const dvec3 inside = closed.inside(random);
-    const dvec3 direction = shapes::sloped_direction(random);
-    if (random.chance(0.5) || !has_outside) return {inside, direction, 1e300};
-    const double back = walker::way_out(closed.scene, inside, -direction) * 0.999999;
-    return {inside - back * direction, direction, back};
-}
-
-struct Score {
-    int rays = 0;
-    int leaks = 0;
-    std::string first;
-};
 
 Score shoot_at(const Closed& closed, HitTest rung, int rays, Random& random) {
-    const PictureSettings settings = settings_for(closed.scene, rung);
-    const std::vector<CellStore> cells = load_array(closed.scene, settings);
-    const Context context{closed.scene, settings};
-    const bool has_outside = closed.has_outside();
-    Score score;
-    for (int i = 0; i < rays; ++i) {
-        const Shot shot = shoot(closed, has_outside, random);
-        int x = 0;
-        int y = 0;
-        const Ray ray = walker::ray_at(closed.scene, shot.origin, shot.direction, x, y);
-        const auto found = walker::walk(cells, context, ray, x, y);
-        ++score.rays;
-        if (found && found->t <= shot.until + 1e-6) continue;
-        if (score.leaks++ == 0) {
-            std::ostringstream text;
-            text.precision(17);
-            text << "from (" << shot.origin.x << ", " << shot.origin.y << ", " << shot.origin.z << ") along ("
-                 << shot.direction.x << ", " << shot.direction.y << ", " << shot.direction.z << "), "
-                 << (found ? "hit at " + std::to_string(found->t) + " instead of before " +
-                                 std::to_string(shot.until)
-                           : std::string("no hit"));
-            score.first = text.str();
-        }
-    }
-    return score;
+    return leaks::shoot_at(closed, settings_for(closed.scene, rung), rays, random);
 }
 
 void expect_no_leak(Closed (*make)(Random&), std::uint64_t first_seed, int surfaces, int rays) {
@@ -171,13 +119,13 @@ TEST(Watertight, AWallWhoseCornersMissItsPlaneByAThousandthOfACellHasNoHole) {
         const double crosses = 2 + 96 * (border - near) / lean;
         for (const HitTest rung : {HitTest::plane, HitTest::mask, HitTest::edge}) {
             const PictureSettings settings = settings_for(scene, rung);
-            const auto cells = load_array(scene, settings);
-            const Context context{scene, settings};
+            const Context context(scene, settings);
+            const auto cells = load_array(scene, settings, context.arithmetic);
             for (int i = 0; i < 500; ++i) {
                 const dvec3 origin{0.25, random.uniform(2, 14), crosses + random.uniform(-0.2, 0.2) / lean};
                 int x = 0;
                 int y = 0;
-                const Ray ray = walker::ray_at(scene, origin, {1, 0, 0}, x, y);
+                const Ray ray = walker::ray_at(context, origin, {1, 0, 0}, x, y);
                 ++rays;
                 if (walker::walk(cells, context, ray, x, y)) continue;
                 if (leaks++ > 0) continue;
@@ -205,8 +153,8 @@ TEST(Watertight, NoRaySlipsThroughAnEdgeOrACorner) {
                                               : shapes::wedge(shape);
         for (const HitTest rung : watertight_rungs) {
             const PictureSettings settings = settings_for(closed.scene, rung);
-            const auto cells = load_array(closed.scene, settings);
-            const Context context{closed.scene, settings};
+            const Context context(closed.scene, settings);
+            const auto cells = load_array(closed.scene, settings, context.arithmetic);
             Random random(seed);
             for (int i = 0; i < 400; ++i) {
                 const auto& outline =
@@ -218,7 +166,7 @@ TEST(Watertight, NoRaySlipsThroughAnEdgeOrACorner) {
                 const dvec3 origin = closed.inside(random);
                 int x = 0;
                 int y = 0;
-                const Ray ray = walker::ray_at(closed.scene, origin, glm::normalize(target - origin), x, y);
+                const Ray ray = walker::ray_at(context, origin, glm::normalize(target - origin), x, y);
                 const auto found = walker::walk(cells, context, ray, x, y);
                 ASSERT_TRUE(found && found->t < glm::length(target - origin) + 1e-5)
                     << "rung " << int(rung) << ", target (" << target.x << ", " << target.y << ", "
@@ -255,14 +203,13 @@ TEST(Watertight, NoReflectedRayLeavesAClosedRoom) {
         closed.scene.objects[0] = hand_made::mirror(1);
         PictureSettings settings = settings_for(closed.scene, HitTest::edge);
         settings.max_depth = 62;
-        const auto cells = load_array(closed.scene, settings);
-        const Context context{closed.scene, settings};
+        const Context context(closed.scene, settings);
+        const auto cells = load_array(closed.scene, settings, context.arithmetic);
         Random random(seed);
         for (int i = 0; i < 200; ++i) {
             int x = 0;
             int y = 0;
-            Ray ray =
-                walker::ray_at(closed.scene, closed.inside(random), shapes::sloped_direction(random), x, y);
+            Ray ray = walker::ray_at(context, closed.inside(random), shapes::sloped_direction(random), x, y);
             for (int bounce = 0; bounce < 10; ++bounce) {
                 const auto found = walker::walk(cells, context, ray, x, y);
                 ASSERT_TRUE(found) << "bounce " << bounce << " of ray " << i << ": from ("

@@ -32,9 +32,12 @@ TEST_P(Picture, LooksAsItsBaselineDoes) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, Picture,
-    ::testing::Values(Baseline{"still_life", "still_life.nff", {}}, Baseline{"cornell", "cornell.nff", {}},
-                      Baseline{"facing_mirrors", "facing_mirrors.nff", {}},
-                      Baseline{"still_life_loaded", "still_life.nff", {"--stage", "load"}}),
+    ::testing::Values(
+        Baseline{"still_life", "still_life.nff", {"--arithmetic", "exact"}},
+        Baseline{"cornell", "cornell.nff", {"--arithmetic", "exact"}},
+        Baseline{"facing_mirrors", "facing_mirrors.nff", {"--arithmetic", "exact"}},
+        Baseline{"still_life_loaded", "still_life.nff", {"--stage", "load", "--arithmetic", "exact"}},
+        Baseline{"still_life_20_bits", "still_life.nff", {"--word-bits", "20"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

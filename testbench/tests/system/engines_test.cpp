@@ -63,7 +63,11 @@ INSTANTIATE_TEST_SUITE_P(
         Words{"--cells", "32x32", "--exterior", "none"}, Words{"--cells", "32x32", "--viewer", "infinity"},
         Words{"--cells", "32x32", "--max-depth", "0"},
         Words{"--cells", "32x32", "--max-depth", "7", "--min-weight", "0"},
-        Words{"--cells", "32x32", "--normal-offset", "0.05"}),
+        Words{"--cells", "32x32", "--normal-offset", "0.05"},
+        Words{"--cells", "32x32", "--arithmetic", "exact"},
+        Words{"--cells", "32x32", "--arithmetic", "exact", "--hit", "mask", "--shadows", "memo"},
+        Words{"--cells", "32x32", "--word-bits", "12"}, Words{"--cells", "32x32", "--word-bits", "32"},
+        Words{"--cells", "32x32", "--rounding", "truncate", "--power", "schlick"}),
     name_of_words);
 
 class LoadedEqualsUntimed : public ::testing::TestWithParam<Words> {};
@@ -79,7 +83,7 @@ TEST_P(LoadedEqualsUntimed, OnOwnScenes) {
 INSTANTIATE_TEST_SUITE_P(With, LoadedEqualsUntimed,
                          ::testing::Values(Words{"--display", "phong"}, Words{"--display", "gouraud"},
                                            Words{"--normals", "voxel", "--hit", "plane"},
-                                           Words{"--exterior", "none"}),
+                                           Words{"--arithmetic", "exact"}, Words{"--exterior", "none"}),
                          name_of_words);
 
 TEST(Engines, AMachineWithoutRoomForItsVoxelsStillGivesTheUntimedPicture) {

@@ -22,8 +22,7 @@ const std::vector<Words>& settings_of_time() {
         {"--slots", "free"},
         {"--link-bits", "1"},
         {"--link-bits", "400"},
-        {"--word-bits", "8"},
-        {"--word-bits", "32", "--link-bits", "7"},
+        {"--link-bits", "7"},
         {"--cost", "walk_step=1", "--cost", "compare_edge=1", "--cost", "per_edge=1"},
         {"--cost", "shade_setup=300", "--cost", "source_view=1"},
         {"--cost", "route_return=9", "--cost", "backoff=1"},
@@ -71,6 +70,33 @@ TEST(Picture, DoesNotDependOnTimeAndTransportWithPrecastShadowsEither) {
         }
     }
     EXPECT_EQ(images.size(), 1u);
+}
+
+TEST(Picture, DoesNotDependOnWordsAndOperatorsInExactArithmetic) {
+    // There they only say how long messages and operators take.
+    const Workshop workshop;
+    std::set<std::string> images;
+    std::set<std::string> schedules;
+    const std::vector<Words> all = {{},
+                                    {"--word-bits", "8"},
+                                    {"--word-bits", "32"},
+                                    {"--reciprocal", "rounded"},
+                                    {"--root", "table"},
+                                    {"--power", "schlick"},
+                                    {"--cost", "root_newton=9"}};
+    const Words exact = joined(square, {"--arithmetic", "exact"});
+    for (const Words& words : all) {
+        const Json report = workshop.report(own_scene("still_life.nff"), joined(exact, words));
+        images.insert(image(report));
+        schedules.insert(schedule(report));
+    }
+    EXPECT_EQ(images.size(), 1u);
+    EXPECT_EQ(schedules.size(), all.size());
+    for (const Words& words : {Words{"--rounding", "truncate"}, Words{"--root-table", "4"}}) {
+        const Json report = workshop.report(own_scene("still_life.nff"), joined(exact, words));
+        EXPECT_EQ(images.count(image(report)), 1u);
+        EXPECT_EQ(schedules.count(schedule(report)), 1u) << "nor does the schedule on these";
+    }
 }
 
 TEST(Schedule, IsEqualForEqualConfigurationsAndForWhatIsNoTime) {

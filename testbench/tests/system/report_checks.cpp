@@ -37,7 +37,17 @@ const char* const keys[] = {
     "/voxels/max_per_cell",
     "/voxels/mean_per_occupied_cell",
     "/voxels/bits_each",
+    "/voxels/bits_total",
+    "/voxels/max_bits_per_cell",
     "/voxels/overflowed",
+    "/message_bits/ray",
+    "/message_bits/shadow_ray",
+    "/message_bits/intensity",
+    "/message_bits/verdict",
+    "/message_bits/span",
+    "/message_bits/trapeze",
+    "/formats/unit",
+    "/formats/depth",
     "/ray_store/capacity",
     "/ray_store/peak",
     "/ray_store/mean",
@@ -113,7 +123,13 @@ void expect_bounds(const Json& report) {
     for (const auto& peak : report.at("buffers").at("peak")) {
         EXPECT_LE(peak.get<std::int64_t>(), count(report.at("buffers"), "depth"));
     }
-    EXPECT_LE(count(report.at("voxels"), "max_per_cell"), count(report.at("voxels"), "stored"));
+    const Json& voxels = report.at("voxels");
+    EXPECT_LE(count(voxels, "max_per_cell"), count(voxels, "stored"));
+    EXPECT_LE(count(voxels, "max_bits_per_cell"), count(voxels, "bits_total"));
+    EXPECT_LE(count(voxels, "bits_total"),
+              count(voxels, "max_bits_per_cell") * count(voxels, "occupied_cells"));
+    EXPECT_NEAR(voxels.at("bits_each").get<double>() * double(count(voxels, "stored")),
+                double(count(voxels, "bits_total")), 1e-6 * double(count(voxels, "bits_total")));
     EXPECT_EQ(report.at("hash").at("image").get<std::string>().size(), 16u);
     EXPECT_EQ(report.at("hash").at("schedule").get<std::string>().size(), 16u);
 }

@@ -79,6 +79,9 @@ TEST(Usage, WholeNumbersOutOfRangeAreRefused) {
         {"ray-store", {"0", "-1", "1025"}},
         {"buffer", {"0", "-1", "1025"}},
         {"link-bits", {"0", "-1", "4097"}},
+        {"reciprocal-table", {"0", "2", "8192"}},
+        {"root-table", {"-64", "3", "4097"}},
+        {"power-table", {"1", "5000"}},
         {"max-cycles", {"-1", "4611686018427387905"}},
         {"voxel-capacity", {"-1", "1000001"}},
         {"exterior-processors", {"0", "-1", "1000001"}},
@@ -97,7 +100,7 @@ TEST(Usage, RealNumbersOutOfRangeAreRefused) {
         {"chord-error", {"0", "-0.1", "1001", "1e-4"}},
         {"min-weight", {"-0.1", "1.1", "-1e-9"}},
         {"clock-mhz", {"0", "-20", "1e6", "1e-4"}},
-        {"normal-offset", {"-1e-9", "1.5"}}};
+        {"normal-offset", {"-1.1", "1.5"}}};
     for (const auto& [option, values] : options) {
         expect_values_refused(option, values);
         expect_values_refused(option, no_numbers);
@@ -106,11 +109,21 @@ TEST(Usage, RealNumbersOutOfRangeAreRefused) {
 }
 
 TEST(Usage, WordsThatNoChoiceOffersAreRefused) {
-    const Words options = {"viewer",  "stage",    "display",    "engine",   "hit",      "normals",
-                           "shadows", "exterior", "arithmetic", "networks", "recovery", "slots"};
+    const Words options = {"viewer",  "stage",    "display",    "engine",   "hit",        "normals",
+                           "shadows", "exterior", "arithmetic", "rounding", "reciprocal", "root",
+                           "power",   "networks", "recovery",   "slots"};
     for (const std::string& option : options) expect_values_refused(option, {"foo", "", "EDGE", "0", "nan"});
     expect_values_refused("hit", {"edg", "edges", "edge ", "edge|mask"});
     expect_values_refused("arithmetic", {"float", "double"});
+}
+
+TEST(Usage, TablesWhoseSizeIsNoPowerOfTwoAreRefused) {
+    for (const std::string table : {"reciprocal", "root", "power"}) {
+        for (const std::string size : {"5", "6", "63", "100", "4095"}) {
+            expect_each_refused(
+                {{{"--" + table + "-table", size}, table + " table of " + size + " entries"}});
+        }
+    }
 }
 
 TEST(Usage, CostsThatAreNoneAreRefused) {

@@ -1,0 +1,77 @@
+#include "testbench/raycell/machine_run.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+
+#include "testbench/raycell/commands.hpp"
+
+namespace raycell {
+namespace {
+
+/// What a process can still get, the page cache included; free pages alone where the system doesn't say.
+double available_bytes() {
+    std::ifstream file("/proc/meminfo");
+    std::string key;
+    double kilobytes = 0;
+    std::string unit;
+    while (file >> key >> kilobytes >> unit) {
+        if (key == "MemAvailable:") return kilobytes * 1024;
+    }
+    return double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+void check_memory(const RenderOptions& options) {
+    constexpr double bytes_per_cell_module = 10e3;
+    constexpr double bytes_per_untimed_cell = 200;
+    const double each = options.engine == Engine::timed ? bytes_per_cell_module : bytes_per_untimed_cell;
+    const double needed = each * options.picture.width * options.picture.height;
+    const double there = available_bytes();
+    if (needed > there) {
+        throw UsageError("--cells: " + std::to_string(std::llround(needed / 1e9)) +
+                         " GB would be needed for so many cells, " +
+                         std::to_string(std::llround(there / 1e9)) +
+                         " GB are free; expected a smaller array");
+    }
+}
+
+void show_progress(const RunProgress& p) {
+    std::cerr << "\r" << p.phase << ": cycle " << p.cycle << ", " << p.done << " of " << p.all
+              << (std::string(p.phase) == "load" ? " cells loaded, " : " pixels done, ") << p.hops << " hops"
+              << std::flush;
+}
+
+int exit_code(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::completed:
+            return exit_done;
+        case Verdict::deadlock:
+        case Verdict::livelock:
+            return exit_stuck;
+        case Verdict::cycle_limit:
+        case Verdict::capacity:
+            return exit_limit;
+    }
+    return exit_usage;
+}
+
+void explain(const RunResult& result) {
+    if (result.verdict == Verdict::completed) return;
+    std::cerr << "raycell: verdict " << name_of(result.verdict);
+    if (result.verdict == Verdict::capacity) {
+        std::cerr << ": " << result.storage.overflowed << " voxels did not fit (--voxel-capacity)";
+    }
+    std::cerr << '\n';
+    constexpr std::size_t shown = 10;
+    for (std::size_t i = 0; i < result.report.size() && i < shown; ++i)
+        std::cerr << "  " << result.report[i] << '\n';
+    if (result.report.size() > shown) {
+        std::cerr << "  ... " << result.report.size() << " in all, see deadlock.report in the JSON\n";
+    }
+}
+
+}  // namespace raycell

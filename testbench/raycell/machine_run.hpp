@@ -1,0 +1,21 @@
+// What render and size share about running a machine: is there room, how far is it, how did it end.
+#pragma once
+
+#include "pipeline/machine.hpp"
+#include "testbench/raycell/options.hpp"
+
+namespace raycell {
+
+/// A machine that can't be held in memory is refused, with a UsageError, before it is built.
+void check_memory(const RenderOptions& options);
+
+/// Writes the line of progress to standard error.
+void show_progress(const RunProgress& progress);
+
+/// What the program exits with after a run with this verdict.
+int exit_code(Verdict verdict);
+
+/// Says on standard error why a run was not completed; nothing if it was.
+void explain(const RunResult& result);
+
+}  // namespace raycell

@@ -1,0 +1,127 @@
+// Rays shot at closed surfaces: how many pass through.
+#pragma once
+
+#include <sstream>
+#include <string>
+
+#include "shapes.hpp"
+#include "walker.hpp"
+
+namespace raycell::leaks {
+
+using property::Random;
+using shapes::Closed;
+
+struct Shot {
+    dvec3 origin;
+    dvec3 direction;
+    double until;  ///< where it is inside the surface: it must have hit something by then
+};
+
+/// Half of the rays start inside and must meet the surface anywhere; half come from the cube's border, where
+/// there is a way, and must meet it before they reach the point inside.
+inline Shot shoot(const Closed& closed, bool from_outside, Random& random) {
+    const dvec3 inside = closed.inside(random);
+    const dvec3 direction = shapes::sloped_direction(random);
+    if (random.chance(0.5) || !from_outside) return {inside, direction, 1e300};
+    const double back = walker::way_out(closed.scene, inside, -direction) * 0.999999;
+    return {inside - back * direction, direction, back};
+}
+
+struct Score {
+    int rays = 0;
+    int leaks = 0;
+    std::string first;
+};
+
+inline std::string describe(const Shot& shot, const std::optional<walker::Found>& found) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "from (" << shot.origin.x << ", " << shot.origin.y << ", " << shot.origin.z << ") along ("
+         << shot.direction.x << ", " << shot.direction.y << ", " << shot.direction.z << "), ";
+    if (found) {
+        text << "hit at " << found->t << " instead of before " << shot.until;
+    } else {
+        text << "no hit";
+    }
+    return text.str();
+}
+
+/// Shoots what `next` draws; counts the rays that meet nothing in time.
+inline Score count_leaks(const Closed& closed, const PictureSettings& settings, int rays,
+                         const std::function<Shot()>& next) {
+    const Context context(closed.scene, settings);
+    const Arithmetic& arithmetic = context.arithmetic;
+    const std::vector<CellStore> cells = load_array(closed.scene, settings, arithmetic);
+    const double last_bit = arithmetic.formats().unit.step();
+    Score score;
+    for (int i = 0; i < rays; ++i) {
+        const Shot shot = next();
+        int x = 0;
+        int y = 0;
+        const Ray ray = walker::ray_at(context, shot.origin, shot.direction, x, y);
+        const auto found = walker::walk(cells, context, ray, x, y);
+        ++score.rays;
+        // Directions of words are not quite unit, and every hop rounds its way.
+        const double slack = arithmetic.exact() ? 1e-6 : (64 + 4 * shot.until) * last_bit;
+        if (found && found->t <= shot.until + slack) continue;
+        if (score.leaks++ == 0) score.first = describe(shot, found);
+    }
+    return score;
+}
+
+/// Rays anyhow; from outside only where `from_outside` allows them.
+inline Score shoot_at(const Closed& closed, const PictureSettings& settings, int rays, Random& random,
+                      bool from_outside = true) {
+    from_outside = from_outside && closed.has_outside();
+    return count_leaks(closed, settings, rays, [&] { return shoot(closed, from_outside, random); });
+}
+
+/// Rays from inside at edges and corners, as exactly as their words allow.
+inline Score shoot_at_edges(const Closed& closed, const PictureSettings& settings, int rays, Random& random) {
+    const std::vector<Polygon>& polygons = closed.scene.polygons;
+    return count_leaks(closed, settings, rays, [&] {
+        const auto& outline = polygons[std::size_t(random.whole(0, int(polygons.size()) - 1))].vertices;
+        const std::size_t corner = std::size_t(random.whole(0, int(outline.size()) - 1));
+        const double share = random.chance(0.5) ? 0 : random.uniform(0, 1);
+        const dvec3 target = glm::mix(outline[corner], outline[(corner + 1) % outline.size()], share);
+        const dvec3 origin = closed.inside(random);
+        return Shot{origin, glm::normalize(target - origin), 1e300};
+    });
+}
+
+/// A point of a polygon that is convex.
+inline dvec3 point_of(const Polygon& polygon, Random& random) {
+    dvec3 sum{0, 0, 0};
+    double weights = 0;
+    for (const dvec3& p : polygon.vertices) {
+        const double weight = -std::log(random.uniform(1e-9, 1));
+        sum += weight * p;
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+/// Rays from inside at faces, where they pass from one column or row of cells to the next.
+inline Score shoot_at_borders(const Closed& closed, const PictureSettings& settings, int rays,
+                              Random& random) {
+    const std::vector<Polygon>& polygons = closed.scene.polygons;
+    return count_leaks(closed, settings, rays, [&] {
+        for (int tries = 0;; ++tries) {
+            const Polygon& face = polygons[std::size_t(random.whole(0, int(polygons.size()) - 1))];
+            dvec3 from = point_of(face, random);
+            const dvec3 to = point_of(face, random);
+            const int axis = random.whole(0, 1);
+            const double border = std::ceil(std::min(from[axis], to[axis]));
+            if (border <= std::max(from[axis], to[axis]) && from[axis] != to[axis]) {
+                from = glm::mix(from, to, (border - from[axis]) / (to[axis] - from[axis]));
+            } else if (tries < 1000) {
+                continue;
+            }
+            const dvec3 origin = closed.inside(random);
+            return Shot{origin, glm::normalize(from - origin), 1e300};
+        }
+    });
+}
+
+}  // namespace raycell::leaks
