@@ -19,5 +19,6 @@ struct Command {
 Command add_render_command(CLI::App& program);
 Command add_truth_command(CLI::App& program);
 Command add_compare_command(CLI::App& program);
+Command add_size_command(CLI::App& program);
 
 }  // namespace raycell

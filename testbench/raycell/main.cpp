@@ -1,4 +1,4 @@
-// raycell: renders with the simulated machine, renders the truth, compares pictures.
+// raycell: renders with the simulated machine, renders the truth, compares pictures, sizes the machine.
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
@@ -62,14 +62,14 @@ int run(int argc, char** argv) {
     program.set_version_flag("--version", "0.1");
     program.require_subcommand(1);
     const std::vector<Command> commands = {add_render_command(program), add_truth_command(program),
-                                           add_compare_command(program)};
+                                           add_compare_command(program), add_size_command(program)};
     std::vector<std::string> words(argv + 1, argv + argc);
     if (!words.empty() && words.front().rfind("-", 0) != 0) {
         const auto named = [&](const Command& c) { return c.app->get_name() == words.front(); };
         const auto command = std::find_if(commands.begin(), commands.end(), named);
         if (command == commands.end()) {
             throw UsageError("unknown command '" + printable(words.front()) +
-                             "'; expected render, truth or compare");
+                             "'; expected render, truth, compare or size");
         }
         words = with_configuration(program, std::move(words), *command->app);
     }

@@ -1,0 +1,275 @@
+// raycell size: the smallest machine that renders a scene as accurately as wanted.
+#include <iostream>
+#include <memory>
+#include <mutex>
+
+#include "model/truth/clip.hpp"
+#include "model/truth/exterior.hpp"
+#include "model/truth/truth.hpp"
+#include "model/untimed.hpp"
+#include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/machine_run.hpp"
+#include "testbench/raycell/new_file.hpp"
+#include "testbench/raycell/report_json.hpp"
+#include "testbench/raycell/scene_input.hpp"
+#include "testbench/raycell/size_report.hpp"
+
+namespace raycell {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SizeOptions : RenderOptions {
+    SizeOptions() { prefix = "size"; }
+    SizeGoal goal;
+};
+
+PictureSettings picture_of(const RenderOptions& options, const SizeSetting& setting) {
+    PictureSettings picture = options.picture;
+    picture.hit = setting.hit;
+    picture.normals = setting.normals;
+    picture.shadows = setting.shadows;
+    picture.depth_levels = setting.depth_levels;
+    picture.numbers.arithmetic = setting.exact() ? Numbers::exact : Numbers::fixed;
+    if (!setting.exact()) picture.numbers.word_bits = setting.word_bits;
+    return picture;
+}
+
+/// The scene as it is placed with so many depth levels: nothing else of it depends on them.
+CellScene with_levels(CellScene scene, int depth_levels) {
+    scene.frame.depth_levels = depth_levels;
+    return scene;
+}
+
+/// What the cells of an array hold, whatever normals and shadow bits add to a voxel.
+class LoadedCells {
+  public:
+    LoadedCells(const CellScene& scene, const PictureSettings& picture) {
+        const Context context(scene, picture);
+        for (const CellStore& cell : load_array(scene, picture, context.arithmetic)) {
+            counts_.add(cell, {});
+            const std::size_t voxels = cell.voxels.size();
+            if (most_edges_.size() <= voxels) most_edges_.resize(voxels + 1, none);
+            most_edges_[voxels] = std::max(most_edges_[voxels], std::int64_t(cell.edges.size()));
+        }
+    }
+
+    StorageCounts storage(const VoxelBits& each) const {
+        const auto base = std::uint64_t(each.base);
+        const auto per_edge = std::uint64_t(each.per_edge);
+        StorageCounts counts = counts_;
+        counts.bits = counts.voxels * base + counts.edges * per_edge;
+        for (std::size_t voxels = 0; voxels < most_edges_.size(); ++voxels) {
+            if (most_edges_[voxels] == none) continue;
+            const std::uint64_t bits = voxels * base + std::uint64_t(most_edges_[voxels]) * per_edge;
+            counts.max_cell_bits = std::max(counts.max_cell_bits, bits);
+        }
+        return counts;
+    }
+
+  private:
+    static constexpr std::int64_t none = -1;
+    StorageCounts counts_;
+    std::vector<std::int64_t> most_edges_;  ///< by the number of voxels: edges of the cell with most of them
+};
+
+/// Machines of one scene, measured by the untimed engine against one truth.
+class ArrayModel : public SizeModel {
+  public:
+    ArrayModel(const RenderOptions& options, const CellScene& scene, const ExteriorTracer* exterior,
+               const Picture& truth)
+        : options_(options), scene_(scene), exterior_(exterior), truth_(truth) {}
+
+    StorageCounts storage(const SizeSetting& setting) const override {
+        const PictureSettings picture = picture_of(options_, setting);
+        const Formats formats(picture.numbers.word_bits, picture.numbers.rounding, extent_of(scene_.frame));
+        return loaded(setting).storage(voxel_bits(picture, formats, scene_.sources.size()));
+    }
+
+    SizeTrial run(const SizeSetting& setting) const override {
+        show(setting);
+        const CellScene scene = with_levels(scene_, setting.depth_levels);
+        UntimedMachine machine(scene, picture_of(options_, setting), exterior_);
+        SizeTrial trial;
+        trial.setting = setting;
+        const Picture picture = machine.render();
+        trial.accuracy = compare(picture, truth_);
+        trial.image = image_hash(picture);
+        trial.storage = machine.storage();
+        return trial;
+    }
+
+  private:
+    const LoadedCells& loaded(SizeSetting setting) const {
+        setting.normals = Normals::linear;
+        setting.shadows = Shadows::per_hit;
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            const auto found = loaded_.find(setting);
+            if (found != loaded_.end()) return found->second;
+        }
+        const CellScene scene = with_levels(scene_, setting.depth_levels);
+        LoadedCells cells(scene, picture_of(options_, setting));
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return loaded_.emplace(setting, std::move(cells)).first->second;
+    }
+
+    void show(const SizeSetting& setting) const {
+        if (!shows_progress(options_)) return;
+        SizeTrial trial;
+        trial.setting = setting;
+        const std::string words = setting.exact() ? "a bound in exact arithmetic" : words_for(report(trial));
+        const std::lock_guard<std::mutex> lock(mutex_);
+        std::cerr << "\r\033[Ksize: run " << ++runs_ << ", " << words << std::flush;
+    }
+
+    const RenderOptions& options_;
+    const CellScene& scene_;
+    const ExteriorTracer* exterior_;
+    const Picture& truth_;
+    mutable std::mutex mutex_;
+    mutable std::map<SizeSetting, LoadedCells> loaded_;
+    mutable int runs_ = 0;
+};
+
+/// The limit, and the powers of two below it.
+std::vector<int> levels_to_try(int limit) {
+    std::vector<int> levels = {limit};
+    for (int power = 65536; power >= 1; power /= 2) {
+        if (power < limit) levels.push_back(power);
+    }
+    return levels;
+}
+
+/// The found machine as options of render: no voxel more than it needs, the fewest slots that are guaranteed
+/// to end (design, section 5), buffers of one message.
+RenderOptions machine_of(const SizeOptions& options, const CellScene& scene, const SizeTrial& found) {
+    RenderOptions machine = options;
+    machine.prefix = RenderOptions().prefix;
+    machine.quiet = false;
+    machine.picture = picture_of(options, found.setting);
+    machine.picture.voxel_capacity = int(found.storage.max_voxels);
+    machine.machine.ray_store = std::max(1, waiting_generations(Context(scene, machine.picture)));
+    machine.machine.buffer_depth = 1;
+    machine.engine = Engine::timed;
+    machine.clip_truth = options.picture.exterior == ExteriorMode::none;
+    return machine;
+}
+
+RunResult run_timed(const SizeOptions& options, const RenderOptions& found, const CellScene& scene,
+                    const ExteriorTracer* tracer) {
+    // Never destroyed, as in render.
+    static Machine* const machine = new Machine("machine", scene, found.picture, found.machine, tracer);
+    const bool progress = shows_progress(options);
+    RunResult result = machine->run(progress ? show_progress : std::function<void(const RunProgress&)>());
+    if (progress) end_progress();
+    return result;
+}
+
+void print_timed(const RunResult& timed, const MachineSettings& machine) {
+    std::cout << "timed run: " << name_of(timed.verdict) << " after "
+              << timed.load_cycles + timed.precast_cycles + timed.trace_cycles
+              << " cycles; ray store M = " << machine.ray_store << ", " << timed.ray_store_peak
+              << " in use at most; buffers of " << machine.buffer_depth << ", in use at most:";
+    for (const RunResult::BufferUse& use : timed.buffers) std::cout << ' ' << use.name << ' ' << use.peak;
+    std::cout << '\n';
+}
+
+int report_found(const SizeOptions& options, const CellScene& scene, const ExteriorTracer* tracer,
+                 const SizeTrial& found, Json json) {
+    const CellScene placed = with_levels(scene, found.setting.depth_levels);
+    const RenderOptions machine = machine_of(options, placed, found);
+    const RunResult timed = run_timed(options, machine, placed, tracer);
+    if (timed.verdict == Verdict::completed && image_hash(timed.picture) != found.image) {
+        throw std::logic_error("internal error: the timed machine's picture is not the untimed one's");
+    }
+    json["found"] = report(found);
+    json["found"]["voxel_capacity"] = machine.picture.voxel_capacity;
+    json["found"]["ray_store"] = machine.machine.ray_store;
+    json["found"]["buffer_depth"] = machine.machine.buffer_depth;
+    json["timed"] = report(timed, placed, machine.picture, machine.machine);
+    OutputSet outputs(options.prefix);
+    outputs.write(".csv", [&](const std::string& path) { write_text(path, tried_csv(json["tried"])); });
+    outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
+    outputs.write(".toml",
+                  [&](const std::string& path) { write_text(path, to_toml(render_configuration(machine))); });
+    outputs.keep();
+    explain(timed);
+    if (options.quiet) return exit_code(timed.verdict);
+    std::cout << "\nsmallest machine: " << words_for(json["found"]) << '\n'
+              << "accuracy " << accuracy_words(json["found"]) << "\n\n"
+              << beside_the_paper(json["found"]) << '\n';
+    print_timed(timed, machine.machine);
+    std::cout << "configuration: " << options.prefix << ".toml\n";
+    return exit_code(timed.verdict);
+}
+
+int report_unreachable(const SizeOptions& options, const SizeTrial& nearest, Json json) {
+    json["nearest"] = report(nearest);
+    OutputSet outputs(options.prefix);
+    outputs.write(".csv", [&](const std::string& path) { write_text(path, tried_csv(json["tried"])); });
+    outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
+    outputs.keep();
+    std::cout.flush();
+    std::cerr << "raycell: no setting reaches the goal; nearest: " << accuracy_words(json["nearest"])
+              << " with " << words_for(json["nearest"]) << '\n';
+    return exit_comparison;
+}
+
+int run(const SizeOptions& options, const OptionTable& table, const CLI::App& app) {
+    if (app.count("--psnr") + app.count("--wrong-hits") == 0) {
+        throw UsageError("no goal given; expected --psnr, --wrong-hits or both, see --help");
+    }
+    check_output(options.prefix);
+    check_memory(options);
+    const CellScene scene = read_and_place(options);
+    const TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
+    const bool exterior = options.picture.exterior == ExteriorMode::host;
+    const CellScene clipped = exterior ? CellScene() : clip_scene(scene);
+    const CellScene& seen = exterior ? scene : clipped;
+    const TruthRenderer truth(seen, tree);
+    const Picture exact = truth.render();
+    const ClassicalExterior outside(seen, truth);
+    const ExteriorTracer* const tracer = exterior ? &outside : nullptr;
+
+    const ArrayModel model(options, scene, tracer, exact);
+    SizeSearch search(model, options.goal, levels_to_try(options.picture.depth_levels));
+    const std::optional<SizeTrial> found = search.find();
+    if (shows_progress(options)) end_progress();
+    Json json;
+    json["goal"] = {{"psnr_db", options.goal.psnr_db}, {"wrong_hit_percent", options.goal.wrong_hit_percent}};
+    json["reached"] = found.has_value();
+    json["paper"] = paper_figures();
+    json["config"] = table.values();
+    json["tried"] = Json::array();
+    for (const SizeTrial& trial : search.tried()) json["tried"].push_back(report(trial));
+    if (!options.quiet) std::cout << tried_table(json["tried"]);
+    if (!found) return report_unreachable(options, search.nearest(), std::move(json));
+    return report_found(options, scene, tracer, *found, std::move(json));
+}
+
+}  // namespace
+
+Command add_size_command(CLI::App& program) {
+    auto options = std::make_shared<SizeOptions>();
+    CLI::App* app = program.add_subcommand(
+        "size", "Finds the smallest machine for an accuracy; exit code 2 if there is none");
+    auto table = std::make_shared<OptionTable>(*app);
+    app->add_option("--config",
+                    "options from a file that size or render wrote; the command line has precedence")
+        ->type_name("FILE");
+    add_scene_options(*table, *options);
+    table->number("psnr", options->goal.psnr_db, 0.0, 200.0, "goal: at least this PSNR, dB");
+    table->number("wrong-hits", options->goal.wrong_hit_percent, 0.0, 100.0,
+                  "goal: at most so many pixels with another first hit, percent");
+    table->number("depth", options->picture.depth_levels, 1, 65536, "most depth levels of the cube to try");
+    table->choice("exterior", options->picture.exterior,
+                  {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},
+                  "rays that leave the cube: traced on by the exterior processors, or lost");
+    table->number("seed", options->machine.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1,
+                  "of the back-off's jitter in the timed run");
+    return {app, [options, table, app] { return run(*options, *table, *app); }};
+}
+
+}  // namespace raycell
