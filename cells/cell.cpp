@@ -60,11 +60,12 @@ Cycle Cell::step(Cycle now) {
     return next_;
 }
 
-void Cell::record(Cycle now, Event event, std::uint32_t detail) {
+void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail) {
     // FNV-1a over (cycle, event, detail); the array joins its cells' hashes in their order.
-    for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(detail)}) {
+    for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(hashed)}) {
         hash_ = (hash_ ^ word) * 0x100000001b3ULL;
     }
+    tell(now, event, ray, detail);
 }
 
 // ---- traversal
@@ -122,7 +123,8 @@ void Cell::start_traversal(Cycle now) {
         env_.counters.traversal_cycles += cycles;
         traversal_ = {packet, now + cycles};
         next_test_ = place + 1;
-        record(now, Event::test, std::uint32_t(packet->ray.id));
+        record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
+               std::uint32_t(packet->visit.event));
         want(traversal_.done);
         return;
     }
@@ -143,12 +145,14 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
             return false;
         }
         ++env_.counters.answers_sent;
+        tell(now, CellEvent::answer, answer.id, std::uint32_t(answer.kind));
         deliver(answer, now);
         return true;
     }
     LinkOut* out = out_[std::size_t(route(answer))];
     if (!out->can_send(env_.classes.answer, next_)) return false;
     ++env_.counters.answers_sent;
+    tell(now, CellEvent::answer, answer.id, std::uint32_t(answer.kind));
     ++env_.counters.rays.return_hops;
     if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer.id >> 32)].hops;
     Answer* copy = env_.pools.answers.take();
@@ -156,7 +160,7 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
     const bool intensity = answer.kind == Answer::Kind::intensity;
     out->send(env_.classes.answer, Message(copy),
               env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
-    record(now, Event::send, std::uint32_t(route(answer)) << 8 | unsigned(env_.classes.answer));
+    record_send(now, route(answer), env_.classes.answer, answer.id);
     return true;
 }
 
@@ -203,7 +207,7 @@ void Cell::move_answer(LinkIn& in, Cycle now) {
         if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
         const bool intensity = answer->kind == Answer::Kind::intensity;
         out->send(index, message, env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
-        record(now, Event::send, std::uint32_t(way) << 8 | unsigned(index));
+        record_send(now, way, index, answer->id);
     }
     in.pop(index);
     if (in.occupancy(index) > 0) want(now + 1);
@@ -282,7 +286,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     }
     if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(ray.id >> 32)].hops;
     out->send(index, Message(&packet), env_.cycles_for(bits));
-    record(now, Event::send, std::uint32_t(side) << 8 | unsigned(index));
+    record_send(now, side, index, ray.id);
     return true;
 }
 
@@ -296,7 +300,7 @@ bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, cons
         if (!send_answer(answer, now)) return false;
         if (kind == Answer::Kind::postponed) {
             ++env_.counters.rays_destroyed;
-            record(now, Event::postpone, std::uint32_t(packet.ray.id));
+            record(now, CellEvent::postpone, std::uint32_t(packet.ray.id), packet.ray.id, 0);
         } else {
             ++env_.counters.rays_answered;
         }
@@ -330,7 +334,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     slot.state = Slot::State::to_set_up;
     slot.packet = &packet;
     slot.since = now;
-    record(now, Event::accept, std::uint32_t(packet.ray.id));
+    record(now, CellEvent::accept, std::uint32_t(packet.ray.id), packet.ray.id, *index);
     return true;
 }
 

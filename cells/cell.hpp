@@ -104,8 +104,16 @@ class Cell {
 
     bool local(const Answer& a) const { return a.home_x == x_ && a.home_y == y_; }
     void want(Cycle cycle) { next_ = std::min(next_, cycle); }
-    enum class Event : std::uint32_t { load = 1, send, deliver, accept, postpone, shade, test };
-    void record(Cycle now, Event event, std::uint32_t detail);
+    /// Into the schedule's hash, `hashed`, and to whoever watches.
+    void record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail);
+    void record_send(Cycle now, Side side, int index, std::uint64_t ray) {
+        const std::uint32_t detail = std::uint32_t(side) << 8 | unsigned(index);
+        record(now, CellEvent::send, detail, ray, detail);
+    }
+    /// To whoever watches alone.
+    void tell(Cycle now, CellEvent event, std::uint64_t ray, std::uint32_t detail) const {
+        if (env_.observer) env_.observer->cell_event(*this, now, event, ray, detail);
+    }
 
     Environment& env_;
     int x_;

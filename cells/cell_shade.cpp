@@ -27,6 +27,7 @@ RayPacket* Cell::launch(const Ray& ray) {
     RayPacket* packet = env_.pools.rays.take();
     packet->ray = ray;
     ++env_.counters.rays_sent;
+    tell(env_.scheduler.now(), CellEvent::launch, ray.id, std::uint32_t(ray.kind));
     return packet;
 }
 
@@ -36,7 +37,7 @@ RayPacket* Cell::launch(const Ray& ray) {
 void Cell::deliver(const Answer& answer, Cycle now) {
     store_port_ = now;
     ++env_.counters.answers_delivered;
-    record(now, Event::deliver, std::uint32_t(answer.id));
+    record(now, CellEvent::deliver, std::uint32_t(answer.id), answer.id, std::uint32_t(answer.kind));
     if (answer.kind != Answer::Kind::postponed) env_.counters.last_progress = now;
     want(now + 1);
     const std::uint64_t bit = std::uint64_t(1) << answer.child;
@@ -231,6 +232,7 @@ void Cell::begin_set_up(std::uint32_t index, Cycle now) {
 }
 
 void Cell::begin_direct(RayPacket& packet, Cycle now) {
+    tell(now, CellEvent::direct, packet.ray.id, 0);
     const CellHit& hit = packet.visit.hit;
     const HitSetup setup = set_up_hit(env_.context, store_, packet.ray, hit, x_, y_);
     const Voxel& voxel = store_.voxels[hit.voxel];
@@ -267,7 +269,7 @@ void Cell::finish_shading(Cycle now) {
     } else {
         slot.state = Slot::State::to_answer;
     }
-    record(now, Event::shade, shading_.slot);
+    record(now, CellEvent::shade, shading_.slot, slot.packet->ray.id, shading_.slot);
     shading_.job = Shading::Job::idle;
 }
 

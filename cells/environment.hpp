@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cells/message.hpp"
+#include "cells/observer.hpp"
 #include "cells/scheduler.hpp"
 #include "model/picture.hpp"
 #include "model/untimed.hpp"
@@ -50,7 +51,8 @@ struct Environment {
     Counters counters;
     Phase phase = Phase::load;
     Cycle phase_start = 0;
-    std::vector<WaitingRay> waiting;  ///< scratch of the cell that is running
+    std::vector<WaitingRay> waiting;   ///< scratch of the cell that is running
+    CellObserver* observer = nullptr;  ///< told what every cell does; null: nobody
     bool draining = false;  ///< no cell sends new rays: what still stands in a buffer at the end is locked
 
     /// The scene must outlive the environment; the settings are copied.

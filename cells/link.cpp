@@ -45,6 +45,7 @@ void Link::send(int index, const Message& message, int cycles) {
     buffer.statistics.peak = std::max(buffer.statistics.peak, int(buffer.count + still_seen));
     wires_free_ = now + Cycle(cycles);
     busy_cycles_ += std::uint64_t(cycles);
+    if (observer_) observer_->sent(*this, index, message, cycles, now);
     if (arrivals_) arrivals_->arrives(port_, index, wires_free_);
     if (sink_) scheduler_.wake(*sink_, wires_free_);
 }
@@ -88,6 +89,7 @@ Cycle Link::arrival(int index) const {
 void Link::pop(int index) {
     Buffer& buffer = buffers_[std::size_t(index)];
     const Cycle now = scheduler_.now();
+    if (observer_) observer_->popped(*this, index, buffer.ring[buffer.head].message, now);
     buffer.statistics.occupied_cycles += now - buffer.ring[buffer.head].sent;
     ++buffer.statistics.delivered;
     buffer.head = std::uint32_t((buffer.head + 1) % buffer.ring.size());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cells/message.hpp"
+#include "cells/observer.hpp"
 #include "cells/scheduler.hpp"
 
 namespace raycell {
@@ -63,6 +64,8 @@ class Link : public LinkOut, public LinkIn {
         arrivals_ = &arrivals;
         port_ = port;
     }
+    /// Null: nobody watches.
+    void set_observer(LinkObserver* observer) { observer_ = observer; }
     /// The name as "cell_3_4.east", for reports.
     void set_name(std::string name) { name_ = std::move(name); }
     const std::string& name() const { return name_; }
@@ -105,6 +108,7 @@ class Link : public LinkOut, public LinkIn {
     Client* source_ = nullptr;
     Client* sink_ = nullptr;
     Arrivals* arrivals_ = nullptr;
+    LinkObserver* observer_ = nullptr;
     std::uint32_t port_ = 0;
     std::vector<Buffer> buffers_;
     int depth_;

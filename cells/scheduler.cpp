@@ -41,6 +41,7 @@ Cycle Scheduler::next_busy() const {
 }
 
 void Scheduler::tick() {
+    if (sampler_) sampler_(now_);
     now_ = scheduled_;
     scheduled_ = never;
     if (watch_ && !watch_(watch_argument_, now_)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <systemc>
 #include <vector>
@@ -47,6 +48,10 @@ class Scheduler : public sc_core::sc_module {
         watch_argument_ = argument;
     }
 
+    /// Called before each cycle that is run, with the one run before it: what stood at that one's end stands
+    /// still.
+    void set_sampler(std::function<void(Cycle)> sampler) { sampler_ = std::move(sampler); }
+
     /// Puts the time of a run that has stopped, without running anybody: for looking at it as it would be
     /// later.
     void set_now(Cycle now) { now_ = now; }
@@ -74,6 +79,7 @@ class Scheduler : public sc_core::sc_module {
     bool stopped_ = false;
     bool (*watch_)(void*, Cycle) = nullptr;
     void* watch_argument_ = nullptr;
+    std::function<void(Cycle)> sampler_;
 };
 
 }  // namespace raycell
