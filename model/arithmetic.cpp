@@ -103,10 +103,14 @@ Arithmetic::Arithmetic(const NumberSettings& settings, const ArrayExtent& extent
 
 double Arithmetic::wide(const Format& f, double c, double a1, double b1, double a2, double b2, double a3,
                         double b3) const {
-    // Far beyond every format: it saturates, whatever its last bits.
     const double about = c + a1 * b1 + a2 * b2 + a3 * b3;
-    const double most = std::max({std::abs(c), std::abs(a1 * b1), std::abs(a2 * b2), std::abs(a3 * b3)});
-    if (most > 0x1p44) return f.hold(about);
+    const double size = std::abs(c) + std::abs(a1 * b1) + std::abs(a2 * b2) + std::abs(a3 * b3);
+    // Far beyond every format: it saturates, whatever its last bits.
+    if (size > 0x1p44) return f.hold(about);
+    // Seven roundings of at most 2^-53 each. Where the word is the same at both ends, it is the sum's.
+    const double bound = size * 0x1p-50;
+    const double word = f.hold(about - bound);
+    if (word == f.hold(about + bound)) return word;
     const __int128 sum =
         wide_product(c, 1) + wide_product(a1, b1) + wide_product(a2, b2) + wide_product(a3, b3);
     return f.hold_wide(sum, wide_scale);
