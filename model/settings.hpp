@@ -23,6 +23,15 @@ enum class RunStage { load, trace };
 enum class Display { gouraud, phong };
 enum class ViewerMode { scene, infinity };
 
+/// A rectangle of cells, both ends included.
+struct CellRange {
+    int x0 = 0;
+    int x1 = 0;
+    int y0 = 0;
+    int y1 = 0;
+    bool contains(int x, int y) const { return x >= x0 && x <= x1 && y >= y0 && y <= y1; }
+};
+
 /// The cell's arithmetic. The operators' methods count for their cycles in exact arithmetic too.
 struct NumberSettings {
     Numbers arithmetic = Numbers::fixed;

@@ -38,7 +38,9 @@ struct RunResult {
         double mean = 0;  ///< messages per buffer, over the buffers of the class and all cycles
     };
     std::vector<BufferUse> buffers;
-    std::vector<std::string> report;  ///< what was stuck where, oldest first
+    std::vector<std::string> report;              ///< what was stuck where, oldest first
+    std::vector<std::pair<int, int>> knot_cells;  ///< (x, y) of the cells of the deadlock's knot
+    Cycle knot_formed = never;                    ///< cycle from which on the knot stood
     std::uint64_t schedule_hash = 0;
     double wall_load = 0;  ///< seconds
     double wall_precast = 0;

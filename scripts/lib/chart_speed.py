@@ -137,7 +137,7 @@ ratios are medians over rounds of this one run of the script. Command: `scripts/
 {fixed_part(results)}
 
 *Hops* are messages that crossed from cell to cell, over load, precast and trace; untimed, the steps of rays alone. *Error*
-is PSNR against the truth; 200 means equal. *Cycles*, *buffers*, *deadlock*: whether the run says anything about them. The
+is PSNR of the picture files (32-bit floats) against the truth. *Cycles*, *buffers*, *deadlock*: whether the run says anything about them. The
 untimed machine has neither time nor buffers, so it can't: every ray of it comes home. Its picture is the timed one's in
 the same arithmetic, so for accuracy, voxels and bits it is all one needs.
 

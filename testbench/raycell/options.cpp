@@ -42,6 +42,51 @@ void OptionTable::size(const std::string& name, int& width, int& height, const s
                         }});
 }
 
+namespace {
+
+/// "3" or "3..7".
+bool parse_span(const std::string& word, int& from, int& to) {
+    const auto dots = word.find("..");
+    if (dots == std::string::npos) return parse_number(word, from) && parse_number(word, to) && from >= 0;
+    return parse_number(word.substr(0, dots), from) && parse_number(word.substr(dots + 2), to) && from >= 0 &&
+           from <= to;
+}
+
+bool parse_cells(const std::string& word, CellRange& range) {
+    const auto comma = word.find(',');
+    return comma != std::string::npos && parse_span(word.substr(0, comma), range.x0, range.x1) &&
+           parse_span(word.substr(comma + 1), range.y0, range.y1);
+}
+
+std::string text_of(const CellRange& range) {
+    const auto span = [](int from, int to) {
+        return from == to ? std::to_string(from) : std::to_string(from) + ".." + std::to_string(to);
+    };
+    return span(range.x0, range.x1) + "," + span(range.y0, range.y1);
+}
+
+}  // namespace
+
+void OptionTable::cells(const std::string& name, std::vector<CellRange>& target, const std::string& help) {
+    const auto check = [](const std::string& word) -> std::string {
+        CellRange range;
+        if (parse_cells(word, range)) return "";
+        return "expected X,Y or X0..X1,Y0..Y1 from 0 on, not '" + printable(word) + "'";
+    };
+    const auto set = [&target](const std::vector<std::string>& words) {
+        target.clear();
+        for (const std::string& word : words) parse_cells(word, target.emplace_back());
+    };
+    app_.add_option_function<std::vector<std::string>>("--" + name, set, help)
+        ->check(CLI::Validator(check, "X0..X1,Y0..Y1"))
+        ->allow_extra_args(false);
+    entries_.push_back({name, [&target] {
+                            nlohmann::ordered_json list = nlohmann::ordered_json::array();
+                            for (const CellRange& range : target) list.push_back(text_of(range));
+                            return list;
+                        }});
+}
+
 void OptionTable::costs(CostTable& table) {
     std::string names;
     for (const auto& [name, member] : CostTable::entries()) {

@@ -44,6 +44,9 @@ class OptionTable {
                 const std::string& help);
     /// --cells WxH
     void size(const std::string& name, int& width, int& height, const std::string& help);
+    /// --NAME X,Y or X0..X1,Y0..Y1, may come several times: cells of the array. Whether they lie inside it is
+    /// for the command to check.
+    void cells(const std::string& name, std::vector<CellRange>& target, const std::string& help);
     /// --cost NAME=CYCLES, may come several times
     void costs(CostTable& table);
 
