@@ -5,23 +5,21 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-import time
 
 ROOT, FOLDER = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 SCENES = ["teapot-s4", "balls-s2", "mount-s4", "tetra-s4", "gears-s1"]
 
 
 def raycell(*words):
-    """Runs the program; returns standard output, seconds and peak memory in MB."""
+    """Runs the program; returns standard output, processor seconds (one core) and peak memory in MB."""
     print("raycell", *words, file=sys.stderr, flush=True)
-    start = time.monotonic()
     with tempfile.TemporaryFile("w+") as output:
         child = subprocess.Popen([str(ROOT / "build" / "raycell"), *map(str, words)], stdout=output)
         _, status, usage = os.wait4(child.pid, 0)
         if status != 0:
             sys.exit(f"measure_figures: raycell {' '.join(map(str, words))} failed")
         output.seek(0)
-        return output.read(), time.monotonic() - start, usage.ru_maxrss / 1024
+        return output.read(), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
 def render(scene, *words):
@@ -81,8 +79,8 @@ def main():
     if not FOLDER.is_dir():
         sys.exit(f"measure_figures: {FOLDER} is missing; expected the folder of the SPD scenes")
     parts = ["# Figures\n\nMade by `scripts/measure_figures`.\n",
-             "## Whole jobs\n\nAs `raycell render SCENE --cells SIZE`, on one core of whatever machine this was; times "
-             "vary from run to run and machine to machine.\n", "\n".join(jobs()),
+             "## Whole jobs\n\nAs `raycell render SCENE --cells SIZE`, processor seconds on one core of whatever machine this "
+             "was; they vary from run to run and machine to machine.\n", "\n".join(jobs()),
              "\n## One normal per voxel, one shadow bit per voxel and source\n\nPSNR in dB, 128x128 cells, "
              "`--exterior host`, `exact`, untimed.\n", "\n".join(prices()),
              "\n## How far off its polygon a secondary ray starts\n\nPSNR in dB, rung `edge`, 128x128 cells, `exact`, "
