@@ -333,7 +333,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     Slot& slot = ray_store_[*index];
     slot.state = Slot::State::to_set_up;
     slot.packet = &packet;
-    slot.since = now;
+    slot.since = slot.changed = now;
     record(now, CellEvent::accept, std::uint32_t(packet.ray.id), packet.ray.id, *index);
     return true;
 }
@@ -348,19 +348,13 @@ bool Cell::busy() const {
 
 namespace {
 
-constexpr const char* side_names[] = {"east", "south", "west", "north"};
-
-std::string name_ray(std::uint64_t id) {
-    return std::to_string(id >> 32) + "/" + std::to_string(id & 0xffffffffU);
-}
-
 std::string describe_ray(const RayPacket& packet) {
     const Ray& ray = packet.ray;
     std::string text = "ray " + name_ray(ray.id) + " of generation " + std::to_string(ray.generation);
     if (packet.stage != RayPacket::Stage::decided) return text + ", not yet tested";
     switch (packet.visit.event) {
         case Visit::Event::forward:
-            return text + ", waits for the output " + side_names[int(packet.visit.crossing.side)] +
+            return text + ", waits for the output " + name_of(packet.visit.crossing.side) +
                    " or, at the border, for the answer network";
         case Visit::Event::hit:
             return text + (is_shadow(ray.kind)
@@ -382,21 +376,21 @@ std::vector<std::string> Cell::describe_blocked() const {
         const RayPacket* packet = packet_at(place);
         if (!packet) continue;
         const RayInput& input = ray_inputs_[place];
-        lines.push_back(at + "input " + side_names[int(input.side)] + " class " +
-                        std::to_string(input.index) + " since cycle " +
-                        std::to_string(input.link->arrival(input.index)) + ": " + describe_ray(*packet));
+        lines.push_back(at + "input " + name_of(input.side) + " class " + std::to_string(input.index) +
+                        " since cycle " + std::to_string(input.link->arrival(input.index)) + ": " +
+                        describe_ray(*packet));
     }
     for (int side = 0; side < side_count; ++side) {
         const LinkIn* in = in_[std::size_t(side)];
         if (!in) continue;
         const Message message = in->front(env_.classes.answer);
         if (message.kind != Message::Kind::answer) continue;
-        lines.push_back(at + "input " + side_names[side] + " since cycle " +
+        lines.push_back(at + "input " + name_of(Side(side)) + " since cycle " +
                         std::to_string(in->arrival(env_.classes.answer)) + ": answer to ray " +
                         name_ray(message.answer->id) +
-                        (local(*message.answer) ? ", is home"
-                                                : std::string(", waits for the output ") +
-                                                      side_names[int(route(*message.answer))]));
+                        (local(*message.answer)
+                             ? ", is home"
+                             : std::string(", waits for the output ") + name_of(route(*message.answer))));
     }
     if (own_) {
         lines.push_back(at + "own ray since cycle " + std::to_string(own_->decided) + ": " +

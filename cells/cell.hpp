@@ -9,6 +9,7 @@
 #include "cells/environment.hpp"
 #include "cells/link.hpp"
 #include "cells/ray_store.hpp"
+#include "cells/wait_map.hpp"
 
 namespace raycell {
 
@@ -41,6 +42,9 @@ class Cell {
     bool busy() const;
     /// What stands in the cell, a line each: for reports of runs that stopped.
     std::vector<std::string> describe_blocked() const;
+    /// The cell's part of the wait-for graph: all places of the array first, then what each waits for.
+    void add_places(WaitMap& map) const;
+    void add_waits(WaitMap& map) const;
 
   private:
     struct RayInput {
@@ -102,6 +106,16 @@ class Cell {
     Cycle backoff(std::uint64_t id, unsigned attempt) const;
     RayPacket* launch(const Ray& ray);
 
+    // cell_waits.cpp: the wait-for graph
+    std::string buffer_name(Side from, int index) const;
+    Wants wants_output(const WaitMap& map, Side side, int index) const;
+    Wants wants_answer_way(const WaitMap& map, const Answer& answer) const;
+    Wants wants_slot(const WaitMap& map, const Ray& ray) const;
+    Wants wants_shading(const WaitMap& map) const;
+    Wants wants_ray(const WaitMap& map, const RayPacket& packet) const;
+    Wants wants_children(const WaitMap& map, std::uint32_t index) const;
+    Wants wants_of_slot(const WaitMap& map, std::uint32_t index) const;
+
     bool local(const Answer& a) const { return a.home_x == x_ && a.home_y == y_; }
     void want(Cycle cycle) { next_ = std::min(next_, cycle); }
     /// Into the schedule's hash, `hashed`, and to whoever watches.
@@ -144,5 +158,10 @@ class Cell {
     std::uint64_t hash_ = 0;
     Cycle next_ = never;
 };
+
+/// Adds the buffer of a class at the end of a link, if it holds anything.
+void add_buffer(WaitMap& map, const LinkIn& link, int index, WaitGraph::Node node);
+/// What a message waits for that wants to go over a link.
+Wants wants_buffer(const WaitMap& map, const LinkOut& out, int index, const std::string& name);
 
 }  // namespace raycell

@@ -269,6 +269,7 @@ void Cell::finish_shading(Cycle now) {
     } else {
         slot.state = Slot::State::to_answer;
     }
+    slot.changed = now;
     record(now, CellEvent::shade, shading_.slot, slot.packet->ray.id, shading_.slot);
     shading_.job = Shading::Job::idle;
 }

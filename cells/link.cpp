@@ -81,6 +81,12 @@ Message Link::front(int index) const {
     return entry.visible <= scheduler_.now() ? entry.message : Message();
 }
 
+Link::Held Link::held(int index, int place) const {
+    const Buffer& buffer = buffers_[std::size_t(index)];
+    const Entry& entry = buffer.ring[(buffer.head + std::uint32_t(place)) % buffer.ring.size()];
+    return {entry.message, entry.visible};
+}
+
 Cycle Link::arrival(int index) const {
     const Buffer& buffer = buffers_[std::size_t(index)];
     return buffer.count == 0 ? never : buffer.ring[buffer.head].visible;

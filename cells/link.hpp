@@ -21,6 +21,8 @@ class LinkOut : virtual public sc_core::sc_interface {
     virtual bool can_send(int index, Cycle& retry) = 0;
     /// Starts a message; it is visible at the far end after its link cycles.
     virtual void send(int index, const Message& message, int cycles) = 0;
+    /// Whether the buffer of a class has no room left; for looking at a machine, not for sending.
+    virtual bool full(int index) const = 0;
 };
 
 /// What the receiving side sees.
@@ -33,6 +35,14 @@ class LinkIn : virtual public sc_core::sc_interface {
     virtual void pop(int index) = 0;
     /// Messages in a buffer, those still on the wires included.
     virtual int occupancy(int index) const = 0;
+    /// What stands in a buffer, oldest first, for looking at a machine; `place` below occupancy().
+    struct Held {
+        Message message;
+        Cycle visible = 0;  ///< when it arrived, or will
+    };
+    virtual Held held(int index, int place) const = 0;
+    /// Cycle of the last pop of a class, `never` before the first.
+    virtual Cycle last_pop(int index) const = 0;
     /// Asks the channel to keep `bits` set in `pending` while the buffer of a class holds anything, on the
     /// wires or arrived: so a cell need not look into empty buffers. A channel that can't leaves them set for
     /// ever.
@@ -77,6 +87,10 @@ class Link : public LinkOut, public LinkIn {
     void pop(int index) override;
     void watch(int index, std::uint32_t* pending, std::uint32_t bits) override;
     int occupancy(int index) const override { return int(buffers_[std::size_t(index)].count); }
+
+    bool full(int index) const override { return occupancy(index) >= depth_; }
+    Held held(int index, int place) const override;
+    Cycle last_pop(int index) const override { return buffers_[std::size_t(index)].last_pop; }
 
     int classes() const { return int(buffers_.size()); }
     int depth() const { return depth_; }

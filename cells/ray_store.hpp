@@ -25,7 +25,8 @@ struct Slot {
     dvec3 colour[2] = {dvec3(0), dvec3(0)};
     RayPacket* child = nullptr;  ///< on its way out of the cell, one at a time
     dvec3 result{0, 0, 0};
-    Cycle since = 0;  ///< when the ray was accepted
+    Cycle since = 0;    ///< when the ray was accepted
+    Cycle changed = 0;  ///< when it came into its state
 };
 
 /// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest
@@ -38,6 +39,11 @@ class RayStore {
     /// The index of a slot for a ray of this generation, or nothing.
     std::optional<std::uint32_t> allocate(int generation);
     void release(std::uint32_t index, int generation);
+    /// Whether allocate() would find a slot.
+    bool has_room(int generation) const;
+    /// Whether a slot that a ray of generation `held` gives back lets one of generation `wanting` in, where
+    /// there is no room now.
+    bool would_help(int held, int wanting) const;
 
     Slot& operator[](std::uint32_t index) { return slots_[index]; }
     const Slot& operator[](std::uint32_t index) const { return slots_[index]; }
@@ -51,6 +57,7 @@ class RayStore {
 
   private:
     std::size_t group(int generation) const;
+    int borrowed() const;
 
     int capacity_;
     int shared_;                          ///< slots free for all

@@ -23,6 +23,9 @@ class Exterior : public Stage, public Link::Arrivals {
 
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
     void arrives(std::uint32_t port, int index, Cycle visible) override;
+    /// The exterior's part of the wait-for graph.
+    void add_places(WaitMap& map) const;
+    void add_waits(WaitMap& map) const;
     bool busy() const { return !waiting_.empty() || working_ > 0; }
 
   private:

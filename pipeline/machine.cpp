@@ -152,88 +152,6 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     }
 }
 
-bool Machine::phase_complete() const {
-    const Counters& c = environment_.counters;
-    const std::uint64_t cells = std::uint64_t(environment_.width()) * std::uint64_t(environment_.height());
-    switch (environment_.phase) {
-        case Phase::load:
-            return c.cells_loaded == cells;
-        case Phase::precast:
-            return c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed &&
-                   c.answers_sent == c.answers_delivered &&
-                   std::none_of(array_.cells().begin(), array_.cells().end(),
-                                [](const auto& cell) { return cell->cell().busy(); });
-        case Phase::trace:
-            return c.pixels_done == cells;
-    }
-    return false;
-}
-
-void Machine::judge(RunResult& result) {
-    if (scheduler_.limit_reached()) {
-        result.verdict = Verdict::cycle_limit;
-    } else if (environment_.draining) {
-        // Only what stands still though nobody sends any more is locked for certain.
-        const bool at_rest = !scheduler_.stopped();
-        result.verdict = at_rest && !buffers_empty() ? Verdict::deadlock : Verdict::livelock;
-    } else {
-        result.verdict = Verdict::deadlock;
-        if (kick_finds_work()) throw std::logic_error("internal error: a cell that could move was not woken");
-    }
-    result.report = stuck_report();
-}
-
-bool Machine::buffers_empty() const {
-    const auto empty = [](const std::vector<std::unique_ptr<Link>>& links) {
-        for (const auto& link : links) {
-            for (int index = 0; index < link->classes(); ++index) {
-                if (link->occupancy(index) > 0) return false;
-            }
-        }
-        return true;
-    };
-    return empty(array_.links()) && (!exterior_ || (empty(exterior_->links()) && !exterior_->busy()));
-}
-
-/// Nothing moves by itself: if a step of any cell now changes something, its waking was lost, and the verdict
-/// would be the model's fault, not the machine's.
-bool Machine::kick_finds_work() {
-    const std::uint64_t before = array_.schedule_hash();
-    const Cycle stopped = scheduler_.now();
-    scheduler_.set_now(stopped + (Cycle(1) << 40));  // past every transfer, cost and back-off
-    for (const auto& cell : array_.cells()) cell->cell().step(scheduler_.now());
-    scheduler_.set_now(stopped);
-    return array_.schedule_hash() != before;
-}
-
-std::vector<std::string> Machine::stuck_report() const {
-    std::vector<std::string> lines;
-    for (const auto& cell : array_.cells()) {
-        auto more = cell->cell().describe_blocked();
-        lines.insert(lines.end(), more.begin(), more.end());
-    }
-    const auto add_links = [&lines](const std::vector<std::unique_ptr<Link>>& links) {
-        for (const auto& link : links) {
-            for (int index = 0; index < link->classes(); ++index) {
-                if (link->occupancy(index) == 0) continue;
-                lines.push_back("link " + link->name() + " class " + std::to_string(index) + " since cycle " +
-                                std::to_string(link->arrival(index)) + ": " +
-                                std::to_string(link->occupancy(index)) + " messages");
-            }
-        }
-    };
-    add_links(distribution_.links());
-    add_links(row_links_);
-    if (exterior_) add_links(exterior_->links());
-    const auto age = [](const std::string& line) {
-        const auto at = line.find("since cycle ");
-        return at == std::string::npos ? 0ULL : std::stoull(line.substr(at + 12));
-    };
-    std::stable_sort(lines.begin(), lines.end(),
-                     [&](const std::string& a, const std::string& b) { return age(a) < age(b); });
-    return lines;
-}
-
 RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     progress_ = std::move(progress);
     RunResult result;
@@ -304,9 +222,9 @@ void Machine::collect(RunResult& result) const {
 }
 
 /// Peak and mean of one class over the array's links since their last reset.
-RunResult::BufferUse Machine::buffer_use(const char* class_name, int index, Cycle cycles) const {
+RunResult::BufferUse Machine::buffer_use(const char* buffer_class, int index, Cycle cycles) const {
     RunResult::BufferUse use;
-    use.name = class_name;
+    use.name = buffer_class;
     double occupied = 0;
     double buffers = 0;
     for (const auto& link : array_.links()) {
@@ -321,19 +239,9 @@ RunResult::BufferUse Machine::buffer_use(const char* class_name, int index, Cycl
 
 void Machine::collect_buffers(RunResult& result) const {
     if (environment_.phase == Phase::load) return;
-    static const char* const quadrants[] = {"ray_east_south", "ray_west_south", "ray_east_north",
-                                            "ray_west_north", "answer"};
-    static const char* const halves[] = {"ray_east", "ray_west", "answer"};
-    static const char* const split[] = {"ray", "answer"};
-    static const char* const shared[] = {"all"};
-    const Networks networks = environment_.machine.networks;
-    const char* const* names = networks == Networks::quadrant ? quadrants
-                               : networks == Networks::half   ? halves
-                               : networks == Networks::split  ? split
-                                                              : shared;
     for (int index = 0; index < environment_.classes.count; ++index) {
-        result.buffers.push_back(
-            buffer_use(names[index], index, result.precast_cycles + result.trace_cycles));
+        result.buffers.push_back(buffer_use(class_name(environment_.machine.networks, index), index,
+                                            result.precast_cycles + result.trace_cycles));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cells/array.hpp"
+#include "cells/wait_map.hpp"
 #include "pipeline/distribution.hpp"
 #include "pipeline/exterior.hpp"
 #include "pipeline/geometry.hpp"
@@ -38,7 +39,8 @@ struct RunResult {
         double mean = 0;  ///< messages per buffer, over the buffers of the class and all cycles
     };
     std::vector<BufferUse> buffers;
-    std::vector<std::string> report;              ///< what was stuck where, oldest first
+    std::vector<std::string> report;  ///< what was stuck where, oldest first
+    WaitGraph waits;  ///< of a run that did not complete, sorted into live, tails and knots; else empty
     std::vector<std::pair<int, int>> knot_cells;  ///< (x, y) of the cells of the deadlock's knot
     Cycle knot_formed = never;                    ///< cycle from which on the knot stood
     std::uint64_t schedule_hash = 0;
@@ -71,6 +73,9 @@ class Machine : public sc_core::sc_module {
     /// Cycles without any answer coming home after which postponing is called a livelock.
     Cycle livelock_window() const;
 
+    /// What waits for what as the machine stands now, precast or trace phase; analysed.
+    WaitGraph wait_graph() const;
+
   private:
     void bind_pipeline();
     void run_phase(Phase phase, RunResult& result);
@@ -78,8 +83,9 @@ class Machine : public sc_core::sc_module {
     void judge(RunResult& result);
     void check_conservation() const;
     void collect(RunResult& result) const;
-    RunResult::BufferUse buffer_use(const char* class_name, int index, Cycle cycles) const;
+    RunResult::BufferUse buffer_use(const char* buffer_class, int index, Cycle cycles) const;
     void collect_buffers(RunResult& result) const;
+    static std::vector<std::string> knot_report(const WaitGraph& graph);
     std::vector<std::string> stuck_report() const;
     static bool watch(void* self, Cycle now);
     bool kick_finds_work();

@@ -30,6 +30,7 @@ class Stage : public sc_core::sc_module, public Client {
     /// One cycle; returns the next one in which the stage wants to run of itself.
     virtual Cycle step(Cycle now) = 0;
     Environment& environment() { return environment_; }
+    const Environment& environment() const { return environment_; }
     StageStatistics statistics_;
 
   private:

@@ -1,0 +1,234 @@
+// What a cell's buffers, slots and units wait for: the cell's part of the wait-for graph. The conditions are
+// those of cell.cpp and cell_shade.cpp; whoever changes when something moves there changes it here.
+#include <algorithm>
+
+#include "cells/cell.hpp"
+#include "cells/wait_map.hpp"
+
+namespace raycell {
+namespace {
+
+using Kind = WaitGraph::Kind;
+
+/// The same for a link seen from either side.
+const void* identity(const LinkIn* link) { return dynamic_cast<const void*>(link); }
+const void* identity(const LinkOut* link) { return dynamic_cast<const void*>(link); }
+
+Cycle later(Cycle a, Cycle b) { return b == never ? a : std::max(a, b); }
+
+}  // namespace
+
+std::string Cell::buffer_name(Side from, int index) const {
+    return std::string("input ") + name_of(from) + " " + class_name(env_.machine.networks, index);
+}
+
+void Cell::add_places(WaitMap& map) const {
+    const auto node = [this](Kind kind, std::string what, std::string holds, Cycle since) {
+        WaitGraph::Node n;
+        n.kind = kind;
+        n.x = x_;
+        n.y = y_;
+        n.what = std::move(what);
+        n.holds = std::move(holds);
+        n.since = since;
+        return n;
+    };
+    for (int side = 0; side < side_count; ++side) {
+        if (const LinkIn* in = in_[std::size_t(side)]) {
+            for (int index = 0; index < env_.classes.count; ++index) {
+                add_buffer(map, *in, index, node(Kind::buffer, buffer_name(Side(side), index), "", 0));
+            }
+        }
+    }
+    if (own_)
+        map.place(own_->ray,
+                  map.add(this, 0, node(Kind::own, "own ray", describe(own_->ray), own_->decided)));
+    if (shading_.job == Shading::Job::direct || shading_.job == Shading::Job::direct_answer) {
+        map.place(shading_.packet->ray, map.add(this, 0,
+                                                node(Kind::shading, "shading unit",
+                                                     describe(shading_.packet->ray), shading_.done)));
+    }
+    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
+        const Slot& slot = ray_store_[i];
+        if (slot.state == Slot::State::empty) continue;
+        const std::string name = "slot " + std::to_string(i);
+        map.place(slot.packet->ray,
+                  map.add(this, i, node(Kind::slot, name, describe(slot.packet->ray), slot.changed)));
+        if (!slot.child) continue;
+        map.place(slot.child->ray, map.add(this, i,
+                                           node(Kind::child, "child of " + name, describe(slot.child->ray),
+                                                slot.child->decided)));
+    }
+}
+
+void add_buffer(WaitMap& map, const LinkIn& link, int index, WaitGraph::Node node) {
+    const int count = link.occupancy(index);
+    if (count == 0) return;
+    // The last message to move into its place, or to become the first.
+    node.since = later(0, link.last_pop(index));
+    for (int place = 0; place < count; ++place) {
+        const LinkIn::Held held = link.held(index, place);
+        node.since = std::max(node.since, held.visible);
+        if (place > 0) continue;
+        if (held.message.kind == Message::Kind::ray) {
+            node.since = std::max(node.since, held.message.ray->decided);
+            node.holds = describe(held.message.ray->ray);
+        } else if (held.message.kind == Message::Kind::answer) {
+            node.holds = describe(*held.message.answer);
+        }
+    }
+    if (count > 1) node.holds += ", " + std::to_string(count - 1) + " behind it";
+    const WaitGraph::Index added = map.add(identity(&link), std::uint32_t(index), std::move(node));
+    for (int place = 0; place < count; ++place) {
+        const Message message = link.held(index, place).message;
+        if (message.kind == Message::Kind::ray) map.place(message.ray->ray, added);
+        if (message.kind == Message::Kind::answer) map.place(*message.answer, added);
+    }
+}
+
+Wants wants_buffer(const WaitMap& map, const LinkOut& out, int index, const std::string& name) {
+    if (!out.full(index)) return Wants::nothing(name + ", which has room");
+    const auto buffer = map.find(identity(&out), Kind::buffer, std::uint32_t(index));
+    if (!buffer) return Wants::nothing(name);
+    return {false, false, {*buffer}, name};
+}
+
+Wants Cell::wants_output(const WaitMap& map, Side side, int index) const {
+    return wants_buffer(
+        map, *out_[std::size_t(side)], index,
+        std::string("output ") + name_of(side) + " " + class_name(env_.machine.networks, index));
+}
+
+Wants Cell::wants_answer_way(const WaitMap& map, const Answer& answer) const {
+    if (local(answer)) return Wants::nothing("its way home, in this cell");
+    return wants_output(map, route(answer), env_.classes.answer);
+}
+
+Wants Cell::wants_slot(const WaitMap& map, const Ray& ray) const {
+    if (ray_store_.has_room(ray.generation)) return Wants::nothing("a slot, and there is one");
+    if (env_.machine.recovery == Recovery::postpone) {
+        Wants wants = wants_answer_way(map, answer_to(ray, Answer::Kind::postponed));
+        wants.text = "a way for its postponed notice: " + wants.text;
+        return wants;
+    }
+    Wants wants{false, false, {}, "a slot"};
+    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
+        const Slot& slot = ray_store_[i];
+        if (slot.state == Slot::State::empty) continue;
+        if (!ray_store_.would_help(slot.packet->ray.generation, ray.generation)) continue;
+        if (const auto node = map.find(this, Kind::slot, i)) wants.on.push_back(*node);
+    }
+    return wants;
+}
+
+Wants Cell::wants_shading(const WaitMap& map) const {
+    if (shading_.job != Shading::Job::direct_answer) return Wants::nothing("the shading unit");
+    const auto unit = map.find(this, Kind::shading, 0);
+    return unit ? Wants{false, false, {*unit}, "the shading unit"} : Wants::nothing("the shading unit");
+}
+
+/// A tested ray: the cases of move_ray().
+Wants Cell::wants_ray(const WaitMap& map, const RayPacket& packet) const {
+    const Ray& ray = packet.ray;
+    if (packet.stage != RayPacket::Stage::decided) return Wants::nothing("the traversal unit");
+    const Answer::Kind lit = is_shadow(ray.kind) ? Answer::Kind::lit : Answer::Kind::intensity;
+    const auto end = [&](Answer::Kind kind) {
+        const bool silent = ray.kind == RayKind::precast && kind == Answer::Kind::lit;
+        return silent ? Wants::nothing("nothing: it ends") : wants_answer_way(map, answer_to(ray, kind));
+    };
+    switch (packet.visit.event) {
+        case Visit::Event::hit:
+            if (is_shadow(ray.kind)) return end(Answer::Kind::blocked);
+            return may_wait(env_.context, ray, store_.voxels[packet.visit.hit.voxel].object)
+                       ? wants_slot(map, ray)
+                       : wants_shading(map);
+        case Visit::Event::reaches_source:
+            return end(Answer::Kind::lit);
+        case Visit::Event::leaves_cube:
+            if (beyond_face(env_.context, face_of_depth(ray)) == Beyond::nothing) return end(lit);
+            return Wants::nothing("its way to the border");
+        case Visit::Event::forward:
+            break;
+    }
+    const Side side = packet.visit.crossing.side;
+    const int x = x_ + step_x(side);
+    const int y = y_ + step_y(side);
+    if (x < 0 || x >= env_.width() || y < 0 || y >= env_.height()) {
+        const Face face = ray.outside ? face_of_depth(ray) : face_of(side);
+        if (beyond_face(env_.context, face) == Beyond::nothing) return end(lit);
+    }
+    return wants_output(map, side, env_.classes.ray(ray));
+}
+
+/// All that a waiting slot still lacks; what is between places (a back-off) comes by itself.
+Wants Cell::wants_children(const WaitMap& map, std::uint32_t index) const {
+    const Slot& slot = ray_store_[index];
+    Wants wants{false, true, {}, ""};
+    const auto await = [&](std::optional<WaitGraph::Index> node, const std::string& what) {
+        wants.text += (wants.text.empty() ? "" : ", ") + what;
+        if (node) wants.on.push_back(*node);
+    };
+    if (slot.child) await(map.find(this, Kind::child, index), "its child to leave");
+    for (unsigned child = 0; child < 2; ++child) {
+        if (!slot.await_child[child] || slot.send_child[child]) continue;
+        const RayKind kind = child == 0 ? RayKind::reflected : RayKind::refracted;
+        await(map.where(x_, y_, kind, index, child), child == 0 ? "its reflected ray" : "its refracted ray");
+    }
+    const bool memo = env_.context.settings.shadows == Shadows::memo;
+    const std::uint32_t voxel = slot.packet->visit.hit.voxel;
+    const std::uint64_t verdicts =
+        memo ? slot.setup.facing & ~store_.known[voxel] : slot.awaited & ~slot.to_ask;
+    for (unsigned source = 0; source < 64; ++source) {
+        if (!(verdicts >> source & 1)) continue;
+        await(memo ? map.where(x_, y_, RayKind::memo, voxel, source)
+                   : map.where(x_, y_, RayKind::shadow, index, source),
+              "its verdict of source " + std::to_string(source));
+    }
+    wants.moves = wants.on.empty();
+    return wants;
+}
+
+Wants Cell::wants_of_slot(const WaitMap& map, std::uint32_t index) const {
+    const Slot& slot = ray_store_[index];
+    switch (slot.state) {
+        case Slot::State::to_set_up:
+            return wants_shading(map);
+        case Slot::State::waiting:
+            return complete(slot) ? wants_shading(map) : wants_children(map, index);
+        case Slot::State::to_answer:
+            return wants_answer_way(map, answer_to(slot.packet->ray, Answer::Kind::intensity));
+        case Slot::State::empty:
+        case Slot::State::in_setup:
+        case Slot::State::in_shading:
+            break;
+    }
+    return Wants::nothing("the end of its shading");
+}
+
+void Cell::add_waits(WaitMap& map) const {
+    for (int side = 0; side < side_count; ++side) {
+        const LinkIn* in = in_[std::size_t(side)];
+        if (!in) continue;
+        for (int index = 0; index < env_.classes.count; ++index) {
+            const auto node = map.find(identity(in), Kind::buffer, std::uint32_t(index));
+            if (!node) continue;
+            const Message head = in->front(index);
+            map.set(*node, head.kind == Message::Kind::ray      ? wants_ray(map, *head.ray)
+                           : head.kind == Message::Kind::answer ? wants_answer_way(map, *head.answer)
+                                                                : Wants::nothing("its arrival"));
+        }
+    }
+    if (const auto node = map.find(this, Kind::own, 0)) map.set(*node, wants_ray(map, *own_));
+    if (const auto node = map.find(this, Kind::shading, 0)) {
+        map.set(*node, shading_.job == Shading::Job::direct_answer
+                           ? wants_answer_way(map, answer_to(shading_.packet->ray, Answer::Kind::intensity))
+                           : Wants::nothing("the end of its shading"));
+    }
+    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
+        if (const auto node = map.find(this, Kind::slot, i)) map.set(*node, wants_of_slot(map, i));
+        if (const auto node = map.find(this, Kind::child, i))
+            map.set(*node, wants_ray(map, *ray_store_[i].child));
+    }
+}
+
+}  // namespace raycell
