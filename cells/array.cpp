@@ -36,6 +36,7 @@ Link& Array::make_link(CellModule& source, CellModule& sink, Side side) {
                                             environment_.machine.buffer_depth));
     Link& link = *links_.back();
     link.set_name(std::string(source.basename()) + "." + names[int(side)]);
+    environment_.stall(link);
     link.connect_source(source);
     link.connect_sink(sink);
     return link;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "model/stall.hpp"
+
 namespace raycell {
 
 Cell::Cell(Environment& environment, int x, int y)
@@ -38,6 +40,7 @@ void Cell::begin_phase() {
 
 Cycle Cell::step(Cycle now) {
     next_ = never;
+    moved_ = blocked_ = false;
     if (env_.phase == Phase::load) {
         step_load(now);
         return next_;
@@ -57,6 +60,7 @@ Cycle Cell::step(Cycle now) {
     move_rays(now);
     start_traversal(now);
     start_shading(now);
+    time_out_.step(moved_, blocked_, now);
     return next_;
 }
 
@@ -65,6 +69,7 @@ void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_
     for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(hashed)}) {
         hash_ = (hash_ ^ word) * 0x100000001b3ULL;
     }
+    if (event != CellEvent::test) moved_ = true;
     tell(now, event, ray, detail);
 }
 
@@ -82,6 +87,7 @@ RayPacket* Cell::packet_at(std::size_t place) const {
 }
 
 void Cell::remove_from(std::size_t place) {
+    moved_ = true;
     if (place < ray_inputs_.size()) {
         const RayInput& input = ray_inputs_[place];
         input.link->pop(input.index);
@@ -94,6 +100,12 @@ void Cell::remove_from(std::size_t place) {
         ray_store_[std::uint32_t(place - ray_inputs_.size() - 1)].child = nullptr;
     }
     want(env_.scheduler.now() + 1);  // the next child or own ray may follow
+}
+
+std::uint32_t Cell::unit_cycles(std::uint32_t cycles) {
+    if (!(env_.machine.stall > 0)) return cycles;
+    const std::uint64_t who = std::uint64_t(y_) << 32 | std::uint64_t(x_) << 1 | 1;
+    return cycles + stall_cycles(env_.machine.stall, env_.machine.seed, who, operations_++);
 }
 
 void Cell::finish_traversal(Cycle now) {
@@ -117,9 +129,9 @@ void Cell::start_traversal(Cycle now) {
         if (!packet || packet->stage != RayPacket::Stage::untested) continue;
         packet->visit = visit_cell(store_, packet->ray, env_.context);
         packet->stage = RayPacket::Stage::in_test;
-        const std::uint32_t cycles = packet->ray.outside
-                                         ? env_.costs().walk_step
-                                         : visit_cycles(packet->visit, env_.settings, env_.costs());
+        const std::uint32_t cycles =
+            unit_cycles(packet->ray.outside ? env_.costs().walk_step
+                                            : visit_cycles(packet->visit, env_.settings, env_.costs()));
         env_.counters.traversal_cycles += cycles;
         traversal_ = {packet, now + cycles};
         next_test_ = place + 1;
@@ -202,7 +214,10 @@ void Cell::move_answer(LinkIn& in, Cycle now) {
     } else {
         const Side way = route(*answer);
         LinkOut* out = out_[std::size_t(way)];
-        if (!out->can_send(index, next_)) return;
+        if (!out->can_send(index, next_)) {
+            blocked_ = true;
+            return;
+        }
         ++env_.counters.rays.return_hops;
         if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
         const bool intensity = answer->kind == Answer::Kind::intensity;
@@ -228,7 +243,9 @@ void Cell::move_rays(Cycle now) {
     std::sort(waiting.begin(), waiting.end(), [](const WaitingRay& a, const WaitingRay& b) {
         return a.since != b.since ? a.since < b.since : a.place < b.place;
     });
-    for (const WaitingRay& ray : waiting) move_ray(*ray.packet, ray.place, now);
+    for (const WaitingRay& ray : waiting) {
+        if (!move_ray(*ray.packet, ray.place, now)) blocked_ = true;
+    }
 }
 
 bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
@@ -285,6 +302,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
         ++env_.counters.rays.ray_hops;
     }
     if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(ray.id >> 32)].hops;
+    ++packet.hops;
     out->send(index, Message(&packet), env_.cycles_for(bits));
     record_send(now, side, index, ray.id);
     return true;
@@ -300,6 +318,8 @@ bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, cons
         if (!send_answer(answer, now)) return false;
         if (kind == Answer::Kind::postponed) {
             ++env_.counters.rays_destroyed;
+            env_.ledger.add(packet, x_, y_, now);
+            if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(packet.ray.id >> 32)].postponed;
             record(now, CellEvent::postpone, std::uint32_t(packet.ray.id), packet.ray.id, 0);
         } else {
             ++env_.counters.rays_answered;

@@ -9,6 +9,7 @@
 #include "cells/environment.hpp"
 #include "cells/link.hpp"
 #include "cells/ray_store.hpp"
+#include "cells/time_out.hpp"
 #include "cells/wait_map.hpp"
 
 namespace raycell {
@@ -42,6 +43,7 @@ class Cell {
     bool busy() const;
     /// What stands in the cell, a line each: for reports of runs that stopped.
     std::vector<std::string> describe_blocked() const;
+    const TimeOut& time_out() const { return time_out_; }
     /// The cell's part of the wait-for graph: all places of the array first, then what each waits for.
     void add_places(WaitMap& map) const;
     void add_waits(WaitMap& map) const;
@@ -117,6 +119,8 @@ class Cell {
     Wants wants_of_slot(const WaitMap& map, std::uint32_t index) const;
 
     bool local(const Answer& a) const { return a.home_x == x_ && a.home_y == y_; }
+    /// Cycles of a unit's operation, with its random stalls.
+    std::uint32_t unit_cycles(std::uint32_t cycles);
     void want(Cycle cycle) { next_ = std::min(next_, cycle); }
     /// Into the schedule's hash, `hashed`, and to whoever watches.
     void record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail);
@@ -157,6 +161,10 @@ class Cell {
     std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
     std::uint64_t hash_ = 0;
     Cycle next_ = never;
+    std::uint64_t operations_ = 0;  ///< of the units, for their random stalls
+    bool moved_ = false;            ///< this cycle: something went on, or came home
+    bool blocked_ = false;          ///< this cycle: something wanted to and could not
+    TimeOut time_out_;
 };
 
 /// Adds the buffer of a class at the end of a link, if it holds anything.

@@ -26,6 +26,7 @@ Cycle Cell::backoff(std::uint64_t id, unsigned attempt) const {
 RayPacket* Cell::launch(const Ray& ray) {
     RayPacket* packet = env_.pools.rays.take();
     packet->ray = ray;
+    packet->launched = env_.scheduler.now();
     ++env_.counters.rays_sent;
     tell(env_.scheduler.now(), CellEvent::launch, ray.id, std::uint32_t(ray.kind));
     return packet;
@@ -210,7 +211,8 @@ void Cell::begin_shade(std::uint32_t index, Cycle now) {
     slot.result = shade_hit(env_.context, slot.setup, store_.voxels[hit.voxel].object, slot.lit,
                             slot.colour[0], slot.colour[1]);
     slot.state = Slot::State::in_shading;
-    const std::uint32_t cycles = shade_cycles(env_.context, slot.lit & slot.setup.facing, env_.costs());
+    const std::uint32_t cycles =
+        unit_cycles(shade_cycles(env_.context, slot.lit & slot.setup.facing, env_.costs()));
     shading_ = {Shading::Job::shade, index, now + cycles, nullptr, dvec3(0)};
     env_.counters.shading_cycles += cycles;
     want(shading_.done);
@@ -225,7 +227,7 @@ void Cell::begin_set_up(std::uint32_t index, Cycle now) {
                          store_.voxels[packet.visit.hit.voxel].polygon);
     }
     slot.state = Slot::State::in_setup;
-    const std::uint32_t cycles = setup_cycles(env_.context, slot.setup, env_.costs());
+    const std::uint32_t cycles = unit_cycles(setup_cycles(env_.context, slot.setup, env_.costs()));
     shading_ = {Shading::Job::set_up, index, now + cycles, nullptr, dvec3(0)};
     env_.counters.shading_cycles += cycles;
     want(shading_.done);
@@ -240,8 +242,8 @@ void Cell::begin_direct(RayPacket& packet, Cycle now) {
         record_first_hit(env_.picture.pixels[std::size_t(packet.ray.id >> 32)], setup, voxel.polygon);
     }
     const std::uint64_t lit = env_.context.settings.shadows == Shadows::per_hit ? 0 : store_.lit[hit.voxel];
-    const std::uint32_t cycles = setup_cycles(env_.context, setup, env_.costs()) +
-                                 shade_cycles(env_.context, lit & setup.facing, env_.costs());
+    const std::uint32_t cycles = unit_cycles(setup_cycles(env_.context, setup, env_.costs()) +
+                                             shade_cycles(env_.context, lit & setup.facing, env_.costs()));
     shading_ = {Shading::Job::direct, 0, now + cycles, &packet,
                 shade_hit(env_.context, setup, voxel.object, lit, dvec3(0), dvec3(0))};
     env_.counters.shading_cycles += cycles;
@@ -300,6 +302,7 @@ void Cell::move_replies(Cycle now) {
         ++env_.counters.rays_answered;
         release_slot(i, now);
     }
+    if (waits) blocked_ = true;
     replies_first_ = waits && !replies_first_;
 }
 

@@ -36,7 +36,9 @@ void Cell::add_places(WaitMap& map) const {
     for (int side = 0; side < side_count; ++side) {
         if (const LinkIn* in = in_[std::size_t(side)]) {
             for (int index = 0; index < env_.classes.count; ++index) {
-                add_buffer(map, *in, index, node(Kind::buffer, buffer_name(Side(side), index), "", 0));
+                WaitGraph::Node buffer = node(Kind::buffer, buffer_name(Side(side), index), "", 0);
+                buffer.side = side;
+                add_buffer(map, *in, index, std::move(buffer));
             }
         }
     }
@@ -165,6 +167,7 @@ Wants Cell::wants_children(const WaitMap& map, std::uint32_t index) const {
     const Slot& slot = ray_store_[index];
     Wants wants{false, true, {}, ""};
     const auto await = [&](std::optional<WaitGraph::Index> node, const std::string& what) {
+        if (node && std::find(wants.on.begin(), wants.on.end(), *node) != wants.on.end()) return;
         wants.text += (wants.text.empty() ? "" : ", ") + what;
         if (node) wants.on.push_back(*node);
     };

@@ -1,6 +1,16 @@
 #include "cells/environment.hpp"
 
+#include "cells/link.hpp"
+#include "model/stall.hpp"
+
 namespace raycell {
+
+void Environment::stall(Link& link) const {
+    if (!(machine.stall > 0)) return;
+    std::uint64_t who = 0;
+    for (const char c : link.name()) who = mix_bits(who, std::uint64_t(c));
+    link.set_stall(machine.stall, machine.seed, who);
+}
 
 int Environment::load_bits(const LoadItem& item) const {
     switch (item.kind) {

@@ -1,6 +1,7 @@
 // What all cells of an array share: settings, costs, pools, counters.
 #pragma once
 
+#include "cells/ledger.hpp"
 #include "cells/message.hpp"
 #include "cells/observer.hpp"
 #include "cells/scheduler.hpp"
@@ -8,6 +9,8 @@
 #include "model/untimed.hpp"
 
 namespace raycell {
+
+class Link;
 
 enum class Phase : std::uint8_t { load, precast, trace };
 
@@ -49,6 +52,7 @@ struct Environment {
     Picture& picture;
     MessagePools pools;
     Counters counters;
+    Ledger ledger;
     Phase phase = Phase::load;
     Cycle phase_start = 0;
     std::vector<WaitingRay> waiting;   ///< scratch of the cell that is running
@@ -71,6 +75,8 @@ struct Environment {
     const CostTable& costs() const { return machine.costs; }
     int cycles_for(int message_bits_) const { return link_cycles(message_bits_, machine.link_bits); }
     int load_bits(const LoadItem& item) const;
+    /// Gives a link its random stalls, if there are any; by its name, so set that first.
+    void stall(Link& link) const;
 };
 
 }  // namespace raycell

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "model/stall.hpp"
+
 namespace raycell {
 
 Link::Link(Scheduler& scheduler, int classes, int depth)
@@ -35,6 +37,7 @@ void Link::send(int index, const Message& message, int cycles) {
         buffer.head = 0;
         buffer.ring.emplace_back();
     }
+    if (stall_ > 0) cycles += int(stall_cycles(stall_, stall_seed_, stall_who_, sends_++));
     const std::size_t place = (buffer.head + buffer.count) % buffer.ring.size();
     buffer.ring[place] = {message, now, now + Cycle(cycles)};
     ++buffer.count;

@@ -74,6 +74,12 @@ class Link : public LinkOut, public LinkIn {
         arrivals_ = &arrivals;
         port_ = port;
     }
+    /// Random stalls on the wires (MachineSettings::stall); `who` tells links apart.
+    void set_stall(double probability, std::uint64_t seed, std::uint64_t who) {
+        stall_ = probability;
+        stall_seed_ = seed;
+        stall_who_ = who;
+    }
     /// Null: nobody watches.
     void set_observer(LinkObserver* observer) { observer_ = observer; }
     /// The name as "cell_3_4.east", for reports.
@@ -128,6 +134,10 @@ class Link : public LinkOut, public LinkIn {
     int depth_;
     Cycle wires_free_ = 0;
     std::uint64_t busy_cycles_ = 0;
+    double stall_ = 0;
+    std::uint64_t stall_seed_ = 0;
+    std::uint64_t stall_who_ = 0;
+    std::uint64_t sends_ = 0;
     std::string name_;
 };
 

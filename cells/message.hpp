@@ -14,7 +14,9 @@ struct RayPacket {
     Ray ray;
     Visit visit;
     Stage stage = Stage::untested;
-    std::uint64_t decided = 0;  ///< cycle in which the test was over
+    std::uint64_t launched = 0;  ///< cycle in which it was put on its way
+    std::uint32_t hops = 0;      ///< since then
+    std::uint64_t decided = 0;   ///< cycle in which the test was over
 };
 
 /// A load message: polygons from geometry, trapezes from precomputation and down the column of distributors,

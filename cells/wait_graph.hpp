@@ -27,6 +27,7 @@ class WaitGraph {
         int x = 0;  ///< cell that it belongs to; of a buffer, the cell that its link leads to (the border's,
                     ///< outside)
         int y = 0;
+        int side = -1;      ///< of a buffer: the Side that its link comes from; -1: none
         std::string what;   ///< "input east ray_west", "slot 3", ...
         std::string holds;  ///< "ray 17/4c2 of generation 1", "answer to ray ...": the message that waits
         std::string wants;  ///< what it waits for, in words

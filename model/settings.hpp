@@ -73,7 +73,9 @@ struct MachineSettings {
     std::int64_t max_cycles = 0;   ///< 0: no limit
     int exterior_processors = 64;  ///< >= 1
     int exterior_latency = 200;    ///< cycles per ray handed to an exterior processor, >= 1
-    std::uint64_t seed = 1;        ///< of the back-off's jitter
+    std::uint64_t seed = 1;        ///< of the back-off's jitter and of random stalls
+    /// Probability that a transfer over a link, or an operation of a unit, takes one cycle more; and again.
+    double stall = 0;
     CostTable costs;
 };
 

@@ -16,6 +16,7 @@ void Exterior::join(Array& array) {
             links_.push_back(
                 std::make_unique<Link>(env.scheduler, env.classes.count, env.machine.buffer_depth));
             links_.back()->set_name("border_" + std::to_string(x) + "_" + std::to_string(y) + way);
+            env.stall(*links_.back());
             return links_.back().get();
         };
         Link* out = make(".out");

@@ -60,12 +60,14 @@ Machine::Machine(sc_core::sc_module_name name, const CellScene& scene, const Pic
 
 void Machine::bind_pipeline() {
     to_precomputation_.set_name("geometry.out");
+    environment_.stall(to_precomputation_);
     to_precomputation_.connect_source(geometry_);
     to_precomputation_.connect_sink(precomputation_);
     geometry_.out.bind(to_precomputation_);
     precomputation_.in.bind(to_precomputation_);
 
     to_distribution_.set_name("precomputation.out");
+    environment_.stall(to_distribution_);
     to_distribution_.connect_source(precomputation_);
     to_distribution_.connect_sink(distribution_.row(0));
     precomputation_.out.bind(to_distribution_);
@@ -75,6 +77,7 @@ void Machine::bind_pipeline() {
         row_links_.push_back(std::make_unique<Link>(scheduler_, 1, environment_.machine.buffer_depth));
         Link& link = *row_links_.back();
         link.set_name("distribution.row_" + std::to_string(y) + ".east");
+        environment_.stall(link);
         link.connect_source(distribution_.row(y));
         link.connect_sink(array_.cell(0, y));
         distribution_.row(y).east.bind(link);
@@ -179,6 +182,7 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     collect(result);
     if (going() && result.storage.overflowed > 0) result.verdict = Verdict::capacity;
     result.picture = picture_;
+    result.ended = scheduler_.now();
     return result;
 }
 
@@ -218,6 +222,8 @@ void Machine::collect(RunResult& result) const {
                                 (double(result.trace_cycles) * double(array_.cells().size()));
     }
     result.schedule_hash = array_.schedule_hash();
+    result.ledger = environment_.ledger;
+    collect_time_outs(result);
     collect_buffers(result);
 }
 

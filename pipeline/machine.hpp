@@ -18,6 +18,18 @@ namespace raycell {
 enum class Verdict { completed, deadlock, livelock, cycle_limit, capacity };
 const char* name_of(Verdict verdict);
 
+/// What a time-out of `cycles` in every cell would have told (cells/time_out.hpp), beside the proof.
+struct TimeOutResult {
+    Cycle cycles = 0;
+    std::uint64_t false_alarms = 0;  ///< in cells of which nothing locked: they moved again
+    std::uint64_t early_alarms = 0;  ///< in cells that locked later or in part, and that moved again
+    std::uint64_t knot_cells = 0;    ///< that hold a node of a knot ...
+    std::uint64_t knot_alarms = 0;   ///< ... and of them, those that give alarm and never move again
+    std::uint64_t tail_alarms = 0;   ///< cells that only wait for a knot, give alarm and never move again
+    std::int64_t first_alarm_delay =
+        0;  ///< cycles from the knot's forming to the first lasting alarm in one of its cells
+};
+
 /// What a run of either engine tells about itself. Cycles are 0 for the untimed one.
 struct RunResult {
     Verdict verdict = Verdict::completed;
@@ -40,9 +52,12 @@ struct RunResult {
     };
     std::vector<BufferUse> buffers;
     std::vector<std::string> report;  ///< what was stuck where, oldest first
+    Cycle ended = 0;                  ///< cycle in which the run stopped
     WaitGraph waits;  ///< of a run that did not complete, sorted into live, tails and knots; else empty
     std::vector<std::pair<int, int>> knot_cells;  ///< (x, y) of the cells of the deadlock's knot
     Cycle knot_formed = never;                    ///< cycle from which on the knot stood
+    Ledger ledger;                                ///< what was destroyed and postponed
+    std::vector<TimeOutResult> time_outs;
     std::uint64_t schedule_hash = 0;
     double wall_load = 0;  ///< seconds
     double wall_precast = 0;
@@ -83,6 +98,7 @@ class Machine : public sc_core::sc_module {
     void judge(RunResult& result);
     void check_conservation() const;
     void collect(RunResult& result) const;
+    void collect_time_outs(RunResult& result) const;
     RunResult::BufferUse buffer_use(const char* buffer_class, int index, Cycle cycles) const;
     void collect_buffers(RunResult& result) const;
     static std::vector<std::string> knot_report(const WaitGraph& graph);

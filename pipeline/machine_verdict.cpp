@@ -133,4 +133,32 @@ std::vector<std::string> Machine::stuck_report() const {
     return lines;
 }
 
+void Machine::collect_time_outs(RunResult& result) const {
+    const auto index = [&](int x, int y) {
+        return std::size_t(y) * std::size_t(environment_.width()) + std::size_t(x);
+    };
+    // 2: holds a node of a knot; 1: one that waits for a knot.
+    std::vector<int> locked(array_.cells().size(), 0);
+    for (const WaitGraph::Node& node : result.waits.nodes()) {
+        int& state = locked[index(node.x, node.y)];
+        if (node.state == WaitGraph::State::knot) state = 2;
+        if (node.state == WaitGraph::State::tail) state = std::max(state, 1);
+    }
+    for (int log = TimeOut::least_log; log <= TimeOut::most_log; ++log) {
+        TimeOutResult sum;
+        sum.cycles = Cycle(1) << log;
+        Cycle first = never;
+        for (std::size_t i = 0; i < locked.size(); ++i) {
+            const TimeOut& time_out = array_.cells()[i]->cell().time_out();
+            (locked[i] ? sum.early_alarms : sum.false_alarms) += time_out.ended(log);
+            sum.knot_cells += locked[i] == 2;
+            if (!locked[i] || time_out.since() == never) continue;
+            ++(locked[i] == 2 ? sum.knot_alarms : sum.tail_alarms);
+            if (locked[i] == 2) first = std::min(first, time_out.since() + sum.cycles);
+        }
+        if (first != never) sum.first_alarm_delay = std::int64_t(first) - std::int64_t(result.knot_formed);
+        result.time_outs.push_back(sum);
+    }
+}
+
 }  // namespace raycell

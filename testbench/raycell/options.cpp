@@ -198,6 +198,9 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
                  "slots kept by generation, or free for all");
     table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
     table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
+    table.number(
+        "stall", m.stall, 0.0, 0.9,
+        "probability that a transfer or an operation takes a cycle more, and again; drawn by --seed");
     table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62,
                  "timed engine: stop after so many cycles; 0: never");
     table.number("voxel-capacity", p.voxel_capacity, 0, 1000000, "voxels that a cell can hold; 0: unlimited");

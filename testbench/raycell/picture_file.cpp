@@ -44,7 +44,7 @@ class ExrStream : public Imf::OStream {
 struct ExrRow {
     struct Sample {
         float r, g, b, z, nx, ny, nz;
-        std::uint32_t polygon, cycle, hops;
+        std::uint32_t polygon, cycle, hops, postponed;
     };
     std::vector<Sample> samples;
 
@@ -68,12 +68,14 @@ constexpr Channel channels[] = {
     {"polygon", Imf::UINT, offsetof(ExrRow::Sample, polygon)},
     {"cycle", Imf::UINT, offsetof(ExrRow::Sample, cycle)},
     {"hops", Imf::UINT, offsetof(ExrRow::Sample, hops)},
+    {"postponed", Imf::UINT, offsetof(ExrRow::Sample, postponed)},
 };
 constexpr int colour_channels = 3;  ///< the first of the list, without which there is no picture
 
 ExrRow::Sample to_sample(const Pixel& p) {
     return {float(p.colour.r), float(p.colour.g), float(p.colour.b), float(p.depth), float(p.normal.x),
-            float(p.normal.y), float(p.normal.z), p.polygon,         p.cycle,        p.hops};
+            float(p.normal.y), float(p.normal.z), p.polygon,         p.cycle,        p.hops,
+            p.postponed};
 }
 
 Pixel to_pixel(const ExrRow::Sample& s) {
@@ -84,6 +86,7 @@ Pixel to_pixel(const ExrRow::Sample& s) {
     pixel.polygon = s.polygon;
     pixel.cycle = s.cycle;
     pixel.hops = s.hops;
+    pixel.postponed = s.postponed;
     return pixel;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "testbench/raycell/knot_report.hpp"
+
 namespace raycell {
 namespace {
 
@@ -93,6 +95,9 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
     json["deadlock"] = {{"detected", result.verdict == Verdict::deadlock},
                         {"postponed", c.rays_destroyed},
                         {"report", result.report}};
+    json["deadlock"]["ledger"] = ledger_json(result);
+    json["deadlock"]["time_outs"] = time_outs_json(result);
+    if (result.waits.deadlocked()) json["deadlock"]["knot"] = knot_json(result);
     json["cube"] = {{"depth_cells", scene.frame.depth},
                     {"cell_width_world", scene.frame.cell_width},
                     {"polygons", scene.polygons.size()}};

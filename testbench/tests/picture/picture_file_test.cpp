@@ -54,6 +54,7 @@ Picture noise(int width, int height) {
         pixel.polygon = std::uint32_t(random());
         pixel.cycle = std::uint32_t(random());
         pixel.hops = std::uint32_t(random());
+        pixel.postponed = std::uint32_t(random());
     }
     picture.at(0, 0).depth = std::numeric_limits<double>::infinity();
     picture.at(0, 0).polygon = no_polygon;
@@ -90,6 +91,7 @@ TEST_F(PictureFile, AnExrFileGivesBackEveryFieldInSinglePrecision) {
         EXPECT_EQ(after.pixels[i].polygon, before.pixels[i].polygon);
         EXPECT_EQ(after.pixels[i].cycle, before.pixels[i].cycle);
         EXPECT_EQ(after.pixels[i].hops, before.pixels[i].hops);
+        EXPECT_EQ(after.pixels[i].postponed, before.pixels[i].postponed);
     }
 }
 
