@@ -68,16 +68,19 @@ WaitGraph Machine::wait_graph() const {
     return std::move(map.graph());
 }
 
-/// The knots, a line a node, oldest first; and how much waits for them.
+/// The nodes of all knots, a line each, oldest first.
 std::vector<std::string> Machine::knot_report(const WaitGraph& graph) {
+    std::vector<WaitGraph::Index> order;
+    for (const auto& knot : graph.knots()) order.insert(order.end(), knot.begin(), knot.end());
+    std::stable_sort(order.begin(), order.end(), [&](WaitGraph::Index a, WaitGraph::Index b) {
+        return graph.nodes()[a].since < graph.nodes()[b].since;
+    });
     std::vector<std::string> lines;
-    for (const auto& knot : graph.knots()) {
-        for (const WaitGraph::Index i : knot) {
-            const WaitGraph::Node& node = graph.nodes()[i];
-            lines.push_back("cell (" + std::to_string(node.x) + ", " + std::to_string(node.y) + ") " +
-                            node.what + " since cycle " + std::to_string(node.since) + ": " + node.holds +
-                            ", waits for " + node.wants);
-        }
+    for (const WaitGraph::Index i : order) {
+        const WaitGraph::Node& node = graph.nodes()[i];
+        lines.push_back("cell (" + std::to_string(node.x) + ", " + std::to_string(node.y) + ") " + node.what +
+                        " since cycle " + std::to_string(node.since) + ": " + node.holds + ", waits for " +
+                        node.wants);
     }
     return lines;
 }
