@@ -1,4 +1,5 @@
 // Every run ends with a stated verdict, its exit code, and its files.
+#include <algorithm>
 #include <cmath>
 
 #include "program.hpp"
@@ -22,9 +23,14 @@ Json expect_verdict(const Workshop& workshop, const std::string& scene, const Wo
     EXPECT_EQ(finished.exit_code, exit_code) << finished.err.substr(0, 2000);
     EXPECT_TRUE(contains(finished.err, "verdict " + verdict)) << finished.err.substr(0, 2000);
     EXPECT_LE(finished.error_lines(), 20u) << "the rest of a long report belongs into the JSON";
-    EXPECT_EQ(workshop.results(),
-              (std::vector<std::string>{"a.cells.csv", "a.exr", "a.json", "a.png", "a.toml"}))
+    std::vector<std::string> names = workshop.results();
+    // What is there only where something waits, locked or was destroyed.
+    for (const std::string extra : {"a.knot.svg", "a.ledger.csv", "a.waits.json"}) {
+        names.erase(std::remove(names.begin(), names.end(), extra), names.end());
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"a.cells.csv", "a.exr", "a.json", "a.png", "a.toml"}))
         << "what a machine did until it stopped is of use";
+    EXPECT_EQ(fs::exists(workshop.result("a.knot.svg")), verdict == "deadlock");
     if (!fs::exists(workshop.result("a.json"))) return {};
     const Json report = Json::parse(read_text(workshop.result("a.json")));
     expect_sound(report);
@@ -42,7 +48,7 @@ TEST(Verdict, OneNetworkForAllDeadlocksOnMirrors) {
     const Workshop workshop;
     const Json report =
         expect_verdict(workshop, "facing_mirrors.nff", {"--networks", "shared"}, "deadlock", 3);
-    EXPECT_GT(report.at("deadlock").at("report").size(), 10u);
+    EXPECT_GE(report.at("deadlock").at("report").size(), 2u);
     EXPECT_LT(report.at("cycles").at("trace").get<double>(), 1e7);  // to where it stopped, no farther
     EXPECT_GT(report.at("ray_store").at("mean").get<double>(), 0);  // what is stuck counts
     EXPECT_LE(report.at("ray_store").at("mean").get<double>(), report.at("ray_store").at("peak").get<double>());
