@@ -44,6 +44,8 @@ Cycle Cell::step(Cycle now) {
     }
     finish_traversal(now);
     finish_shading(now);
+    answers_moved_ = 0;
+    if (overdue_) move_overdue(now);
     // Replies of this cell and answers that pass through take turns when both want to go.
     if (replies_first_) {
         move_replies(now);
@@ -170,6 +172,7 @@ void Cell::move_answers(Cycle now) {
     int count = 0;
     for (int side = 0; side < side_count; ++side) {
         if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
+        if (answers_moved_ >> unsigned(side) & 1) continue;
         LinkIn* in = in_[std::size_t(side)];
         if (in->front(index).kind != Message::Kind::answer) continue;
         int place = count++;
@@ -183,26 +186,30 @@ void Cell::move_answers(Cycle now) {
     for (int i = 0; i < count; ++i) move_answer(*in_[std::size_t(order[std::size_t(i)])], now);
 }
 
-void Cell::move_answer(LinkIn& in, Cycle now) {
+bool Cell::move_answer(LinkIn& in, Cycle now) {
     const int index = env_.classes.answer;
     const Message message = in.front(index);
     const Cycle ready = in.arrival(index) + env_.costs().route_return;
     if (now < ready) {
         want(ready);
-        return;
+        return false;
     }
     Answer* answer = message.answer;
     if (local(*answer)) {
         if (store_port_ == now) {
             want(now + 1);
-            return;
+            passed_over(ready, now);
+            return false;
         }
         deliver(*answer, now);
         env_.pools.answers.give_back(answer);
     } else {
         const Side way = route(*answer);
         LinkOut* out = out_[std::size_t(way)];
-        if (!out->can_send(index, next_)) return;
+        if (!out->can_send(index, next_)) {
+            passed_over(ready, now);
+            return false;
+        }
         ++env_.counters.rays.return_hops;
         if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
         const bool intensity = answer->kind == Answer::Kind::intensity;
@@ -211,6 +218,7 @@ void Cell::move_answer(LinkIn& in, Cycle now) {
     }
     in.pop(index);
     if (in.occupancy(index) > 0) want(now + 1);
+    return true;
 }
 
 void Cell::move_rays(Cycle now) {
@@ -228,7 +236,9 @@ void Cell::move_rays(Cycle now) {
     std::sort(waiting.begin(), waiting.end(), [](const WaitingRay& a, const WaitingRay& b) {
         return a.since != b.since ? a.since < b.since : a.place < b.place;
     });
-    for (const WaitingRay& ray : waiting) move_ray(*ray.packet, ray.place, now);
+    for (const WaitingRay& ray : waiting) {
+        if (!move_ray(*ray.packet, ray.place, now)) passed_over(ray.since, now);
+    }
 }
 
 bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {

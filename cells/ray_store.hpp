@@ -25,7 +25,8 @@ struct Slot {
     dvec3 colour[2] = {dvec3(0), dvec3(0)};
     RayPacket* child = nullptr;  ///< on its way out of the cell, one at a time
     dvec3 result{0, 0, 0};
-    Cycle since = 0;  ///< when the ray was accepted
+    Cycle since = 0;   ///< when the ray was accepted
+    Cycle shaded = 0;  ///< when its intensity was ready to go
 };
 
 /// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest
