@@ -110,6 +110,22 @@ TEST(EveryOrder, BetweenFacingMirrorsEndsFromOneSlotPerGenerationOn) {
     }
 }
 
+TEST(EveryOrder, BetweenFacingMirrorsNeedNotEndWithOneSlotLess) {
+    for (const int generations : {2, 3, 4}) {
+        const Script script = facing_mirrors(Networks::half, 2, 1, generations);
+        const Rules rules = rules_for(script, generations - 1, Slots::reserved, Recovery::postpone);
+        const Result result = look("mirrors", script, rules, Networks::half);
+        EXPECT_EQ(result.deadlocks, 0u);
+        EXPECT_GT(result.traps, 0u);
+    }
+}
+
+TEST(EveryOrder, InARowEndsWithSplitBuffersToo) {
+    const Script script = facing_mirrors(Networks::split, 3, 1, 3);
+    const Rules rules = rules_for(script, 3, Slots::reserved, Recovery::postpone);
+    EXPECT_TRUE(look("mirrors apart", script, rules, Networks::split).always_ends());
+}
+
 TEST(EveryOrder, BetweenFacingMirrorsWithSeveralTreesEnds) {
     const Script script = facing_mirrors(Networks::half, 2, 2, 2);
     const Rules rules = rules_for(script, 2, Slots::reserved, Recovery::postpone);
