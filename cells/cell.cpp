@@ -44,8 +44,7 @@ Cycle Cell::step(Cycle now) {
     }
     finish_traversal(now);
     finish_shading(now);
-    answers_moved_ = 0;
-    if (overdue_) move_overdue(now);
+    move_overdue(now);
     // Replies of this cell and answers that pass through take turns when both want to go.
     if (replies_first_) {
         move_replies(now);
@@ -186,30 +185,26 @@ void Cell::move_answers(Cycle now) {
     for (int i = 0; i < count; ++i) move_answer(*in_[std::size_t(order[std::size_t(i)])], now);
 }
 
-bool Cell::move_answer(LinkIn& in, Cycle now) {
+void Cell::move_answer(LinkIn& in, Cycle now) {
     const int index = env_.classes.answer;
     const Message message = in.front(index);
     const Cycle ready = in.arrival(index) + env_.costs().route_return;
     if (now < ready) {
         want(ready);
-        return false;
+        return;
     }
     Answer* answer = message.answer;
     if (local(*answer)) {
         if (store_port_ == now) {
             want(now + 1);
-            passed_over(ready, now);
-            return false;
+            return;
         }
         deliver(*answer, now);
         env_.pools.answers.give_back(answer);
     } else {
         const Side way = route(*answer);
         LinkOut* out = out_[std::size_t(way)];
-        if (!out->can_send(index, next_)) {
-            passed_over(ready, now);
-            return false;
-        }
+        if (!out->can_send(index, next_)) return;
         ++env_.counters.rays.return_hops;
         if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
         const bool intensity = answer->kind == Answer::Kind::intensity;
@@ -218,7 +213,6 @@ bool Cell::move_answer(LinkIn& in, Cycle now) {
     }
     in.pop(index);
     if (in.occupancy(index) > 0) want(now + 1);
-    return true;
 }
 
 void Cell::move_rays(Cycle now) {
@@ -236,9 +230,7 @@ void Cell::move_rays(Cycle now) {
     std::sort(waiting.begin(), waiting.end(), [](const WaitingRay& a, const WaitingRay& b) {
         return a.since != b.since ? a.since < b.since : a.place < b.place;
     });
-    for (const WaitingRay& ray : waiting) {
-        if (!move_ray(*ray.packet, ray.place, now)) passed_over(ray.since, now);
-    }
+    for (const WaitingRay& ray : waiting) move_ray(*ray.packet, ray.place, now);
 }
 
 bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {

@@ -68,14 +68,8 @@ class Cell {
     void finish_traversal(Cycle now);
     void start_traversal(Cycle now);
     void move_answers(Cycle now);
-    bool move_answer(LinkIn& in, Cycle now);
+    void move_answer(LinkIn& in, Cycle now);
     void move_replies(Cycle now);
-    bool reply_directly(Cycle now);
-    bool reply_from_slot(std::uint32_t index, Cycle now);
-    // cell_overdue.cpp
-    void move_overdue(Cycle now);
-    /// Something that wanted to move did not: it may be overdue.
-    void passed_over(Cycle since, Cycle now) { overdue_ = overdue_ || now - since > patience; }
     void move_rays(Cycle now);
     // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
     // then the slots' child registers (last, because the store may grow while places are gone through).
@@ -91,6 +85,8 @@ class Cell {
     bool end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
     bool send_answer(const Answer& answer, Cycle now);
     Side route(const Answer& answer) const;
+    // cell_overdue.cpp
+    void move_overdue(Cycle now);
     // cell_shade.cpp: slots, own rays, shading unit
     void deliver(const Answer& answer, Cycle now);
     void deliver_to_slot(const Answer& answer, Cycle now);
@@ -137,12 +133,7 @@ class Cell {
     Shading shading_;
     std::size_t next_test_ = 0;   ///< round robin over places
     bool replies_first_ = false;  ///< this cycle replies go before passing answers: the last one they lost
-    /// Cycles that a message which waits for an output or the store's port is passed over by others; after
-    /// that it goes before all of them, oldest first. Without it a stream of notices can starve what ends it.
-    static constexpr Cycle patience = 65536;
-    bool overdue_ = false;             ///< in the last cycle something waited for longer than that
-    std::uint32_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
-    Cycle store_port_ = never;         ///< cycle in which the ray store's one write port was used
+    Cycle store_port_ = never;    ///< cycle in which the ray store's one write port was used
     Cycle load_done_ = 0;
     LoadItem* load_item_ = nullptr;
     RayPacket* own_ = nullptr;  ///< primary or precast ray on its way out
@@ -150,8 +141,13 @@ class Cell {
     std::uint8_t own_attempts_ = 0;
     bool root_waits_ = false;  ///< the pixel's intensity is still to come
     bool root_to_send_ = false;
-    std::uint64_t precast_next_ = 0;    ///< voxel · sources + source
-    std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
+    /// Cycles that a message which waits to move is passed over by others; after that it goes before all of
+    /// them, oldest first. Without it a stream of notices can starve what would end it (deadlock.md, step 5).
+    static constexpr Cycle patience = 65536;
+    Cycle look_for_overdue_ = patience;  ///< cycle from which on to look for such messages
+    std::uint32_t answers_moved_ = 0;    ///< bit per side whose buffer of answers was read in this cycle
+    std::uint64_t precast_next_ = 0;     ///< voxel · sources + source
+    std::vector<std::uint64_t> asked_;   ///< memo: per voxel, sources already asked for
     std::uint64_t hash_ = 0;
     Cycle next_ = never;
 };

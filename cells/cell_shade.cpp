@@ -274,39 +274,31 @@ void Cell::finish_shading(Cycle now) {
     shading_.job = Shading::Job::idle;
 }
 
-bool Cell::reply_directly(Cycle now) {
-    Answer answer = answer_to(shading_.packet->ray, Answer::Kind::intensity);
-    answer.colour = shading_.result;
-    RayPacket* packet = shading_.packet;
-    if (!send_answer(answer, now)) {
-        passed_over(shading_.done, now);
-        return false;
-    }
-    ++env_.counters.rays_answered;
-    env_.pools.rays.give_back(packet);
-    shading_.job = Shading::Job::idle;
-    return true;
-}
-
-bool Cell::reply_from_slot(std::uint32_t index, Cycle now) {
-    const Slot& slot = ray_store_[index];
-    Answer answer = answer_to(slot.packet->ray, Answer::Kind::intensity);
-    answer.colour = slot.result;
-    if (!send_answer(answer, now)) {
-        passed_over(slot.shaded, now);
-        return false;
-    }
-    ++env_.counters.rays_answered;
-    release_slot(index, now);
-    return true;
-}
-
 void Cell::move_replies(Cycle now) {
     bool waits = false;
-    if (shading_.job == Shading::Job::direct_answer) waits = !reply_directly(now);
+    if (shading_.job == Shading::Job::direct_answer) {
+        Answer answer = answer_to(shading_.packet->ray, Answer::Kind::intensity);
+        answer.colour = shading_.result;
+        RayPacket* packet = shading_.packet;
+        if (send_answer(answer, now)) {
+            ++env_.counters.rays_answered;
+            env_.pools.rays.give_back(packet);
+            shading_.job = Shading::Job::idle;
+        } else {
+            waits = true;
+        }
+    }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
-        if (ray_store_[i].state != Slot::State::to_answer) continue;
-        if (!reply_from_slot(i, now)) waits = true;
+        Slot& slot = ray_store_[i];
+        if (slot.state != Slot::State::to_answer) continue;
+        Answer answer = answer_to(slot.packet->ray, Answer::Kind::intensity);
+        answer.colour = slot.result;
+        if (!send_answer(answer, now)) {
+            waits = true;
+            continue;
+        }
+        ++env_.counters.rays_answered;
+        release_slot(i, now);
     }
     replies_first_ = waits && !replies_first_;
 }

@@ -25,8 +25,9 @@ struct Slot {
     dvec3 colour[2] = {dvec3(0), dvec3(0)};
     RayPacket* child = nullptr;  ///< on its way out of the cell, one at a time
     dvec3 result{0, 0, 0};
-    Cycle since = 0;   ///< when the ray was accepted
-    Cycle shaded = 0;  ///< when its intensity was ready to go
+    /// Cycle in which `result` was ready to go.
+    Cycle shaded = 0;
+    Cycle since = 0;  ///< when the ray was accepted
 };
 
 /// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest
