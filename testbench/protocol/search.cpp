@@ -301,6 +301,16 @@ bool accepts(const Rules& rules, const std::vector<int>& used, int generation) {
     const int groups = std::max(1, std::min(rules.ray_store, rules.generations));
     std::vector<int> group(std::size_t(groups), 0);
     for (std::size_t g = 0; g < used.size(); ++g) group[std::min(g, std::size_t(groups - 1))] += used[g];
+    if (rules.slots == Slots::nested) {
+        // Generations up to any from this one on leave one slot for each deeper group.
+        int up_to = 0;
+        for (int g = 0; g < groups; ++g) {
+            up_to += group[std::size_t(g)];
+            const int deeper = groups - 1 - g;
+            if (g >= std::min(generation, groups - 1) && up_to >= rules.ray_store - deeper) return false;
+        }
+        return true;
+    }
     if (group[std::size_t(std::min(generation, groups - 1))] == 0) return true;
     int borrowed = 0;
     for (const int u : group) borrowed += std::max(0, u - 1);

@@ -106,12 +106,14 @@ TEST(TimedDeadlockExamples, ARayThatWaitsForASlotAtTheHeadOfABufferLocksWherePos
     run.expect_picture(2);
 }
 
-TEST(TimedDeadlockExamples, FreeSlotsAreALivelockWhereReservedOnesEnd) {
+TEST(TimedDeadlockExamples, FreeSlotsAreALivelockWhereReservedAndNestedOnesEnd) {
     const Variants run = of_own_scene("still_life", 12, 2,
                                       {[](MachineSettings& m) { m.ray_store = 3, m.slots = Slots::free; },
-                                       [](MachineSettings& m) { m.ray_store = 3; }});
+                                       [](MachineSettings& m) { m.ray_store = 3; },
+                                       [](MachineSettings& m) { m.ray_store = 3, m.slots = Slots::nested; }});
     run.expect_stuck(0, Verdict::livelock);
     run.expect_picture(1);
+    run.expect_picture(2);
 }
 
 TEST(TimedDeadlockExamples, NoRayStoreIsLargeEnoughForSharedOrSplitBuffersOfOne) {

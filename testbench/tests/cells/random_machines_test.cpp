@@ -92,7 +92,7 @@ void draw_machine(Drawn& drawn, property::Random& random) {
     MachineSettings& m = drawn.machine;
     m.buffer_depth = random.chance(0.6) ? 1 : random.whole(2, 4);
     m.networks = Networks(random.whole(0, 3));
-    m.slots = random.chance(0.7) ? Slots::reserved : Slots::free;
+    m.slots = random.chance(0.3) ? Slots::free : random.chance(0.5) ? Slots::reserved : Slots::nested;
     m.recovery = random.chance(0.7) ? Recovery::postpone : Recovery::none;
     m.ray_store = random.chance(0.4)    ? random.whole(1, drawn.least)
                   : random.chance(0.15) ? 10000
@@ -117,13 +117,14 @@ Drawn draw(std::uint64_t seed) {
     const PictureSettings& s = drawn.settings;
     const MachineSettings& m = drawn.machine;
     const char* const networks[] = {"shared", "split", "quadrant", "half"};
-    drawn.text +=
-        std::to_string(s.width) + "x" + std::to_string(s.height) + ", M " + std::to_string(m.ray_store) +
-        " (bound " + std::to_string(drawn.least) + "), buffers " + std::to_string(m.buffer_depth) + ", " +
-        networks[int(m.networks)] + ", " + (m.slots == Slots::free ? "free, " : "reserved, ") +
-        (m.recovery == Recovery::none ? "none" : "postpone") + ", links " + std::to_string(m.link_bits) +
-        ", shadows " + std::to_string(int(s.shadows)) + ", exterior " + std::to_string(int(s.exterior)) +
-        ", generations " + std::to_string(s.max_depth);
+    const char* const slots[] = {"reserved, ", "free, ", "nested, "};
+    drawn.text += std::to_string(s.width) + "x" + std::to_string(s.height) + ", M " +
+                  std::to_string(m.ray_store) + " (bound " + std::to_string(drawn.least) + "), buffers " +
+                  std::to_string(m.buffer_depth) + ", " + networks[int(m.networks)] + ", " +
+                  slots[int(m.slots)] + (m.recovery == Recovery::none ? "none" : "postpone") + ", links " +
+                  std::to_string(m.link_bits) + ", shadows " + std::to_string(int(s.shadows)) +
+                  ", exterior " + std::to_string(int(s.exterior)) + ", generations " +
+                  std::to_string(s.max_depth);
     return drawn;
 }
 
@@ -139,7 +140,7 @@ bool must_end(const Drawn& drawn) {
     const MachineSettings& m = drawn.machine;
     const bool room_for_all = m.ray_store >= 10000;  // more than rays that ever wait in these arrays
     const bool by_generation =
-        m.recovery == Recovery::postpone && m.slots == Slots::reserved && m.ray_store >= drawn.least;
+        m.recovery == Recovery::postpone && m.slots != Slots::free && m.ray_store >= drawn.least;
     return acyclic(drawn) && (room_for_all || by_generation);
 }
 

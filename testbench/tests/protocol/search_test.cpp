@@ -12,11 +12,11 @@ namespace raycell::protocol {
 namespace {
 
 const char* const network_names[] = {"shared", "split", "quadrant", "half"};
+const char* const slot_names[] = {"reserved", "free", "nested"};
 
 Result look(const char* what, const Script& script, const Rules& rules, Networks networks) {
     const Result result = search(script, rules);
-    std::cout << what << ", " << network_names[int(networks)] << ", "
-              << (rules.slots == Slots::free ? "free" : "reserved") << ", "
+    std::cout << what << ", " << network_names[int(networks)] << ", " << slot_names[int(rules.slots)] << ", "
               << (rules.recovery == Recovery::none ? "none" : "postpone") << ", M " << rules.ray_store << ": "
               << result.states << " states, " << result.moves << " moves, " << result.deadlocks
               << " deadlocks, " << result.traps << " trapped\n";
@@ -103,8 +103,10 @@ TEST(EveryOrder, BetweenFacingMirrorsEndsFromOneSlotPerGenerationOn) {
         for (const int generations : {1, 2, 3}) {
             const Script script = facing_mirrors(n, 2, 1, generations);
             for (int m = generations; m <= generations + 1; ++m) {
-                const Rules rules = rules_for(script, m, Slots::reserved, Recovery::postpone);
-                EXPECT_TRUE(look("mirrors", script, rules, n).always_ends());
+                for (const Slots slots : {Slots::reserved, Slots::nested}) {
+                    const Rules rules = rules_for(script, m, slots, Recovery::postpone);
+                    EXPECT_TRUE(look("mirrors", script, rules, n).always_ends());
+                }
             }
         }
     }
@@ -124,6 +126,17 @@ TEST(EveryOrder, InARowEndsWithSplitBuffersToo) {
     const Script script = facing_mirrors(Networks::split, 3, 1, 3);
     const Rules rules = rules_for(script, 3, Slots::reserved, Recovery::postpone);
     EXPECT_TRUE(look("mirrors apart", script, rules, Networks::split).always_ends());
+}
+
+TEST(EveryOrder, BetweenFacingMirrorsWithManyTreesEndsWhereDeepGenerationsTakeAllSlots) {
+    struct Case {
+        int trees, generations, ray_store;
+    };
+    for (const Case& c : {Case{3, 2, 2}, Case{2, 2, 3}, Case{2, 3, 3}, Case{2, 3, 4}}) {
+        const Script script = facing_mirrors(Networks::half, 2, c.trees, c.generations);
+        const Rules rules = rules_for(script, c.ray_store, Slots::nested, Recovery::postpone);
+        EXPECT_TRUE(look("mirrors, many trees", script, rules, Networks::half).always_ends());
+    }
 }
 
 TEST(EveryOrder, BetweenFacingMirrorsWithSeveralTreesEnds) {
@@ -273,7 +286,7 @@ Script random_script(property::Random& random, Networks networks) {
     return script;
 }
 
-TEST(EveryOrder, OfRandomTreesEndsWithReservedSlotsAndRecovery) {
+TEST(EveryOrder, OfRandomTreesEndsWithReservedOrNestedSlotsAndRecovery) {
     int looked_at = 0;
     std::uint64_t states = 0;
     for (const std::uint64_t seed : property::seeds(1, 150)) {
@@ -282,9 +295,9 @@ TEST(EveryOrder, OfRandomTreesEndsWithReservedSlotsAndRecovery) {
         const Networks networks = acyclic[random.whole(0, 1)];
         const Script script = random_script(random, networks);
         const int bound = script.waiting_generations();
+        const Slots slots = random.chance(0.5) ? Slots::reserved : Slots::nested;
         const Result result =
-            search(script, rules_for(script, bound + random.whole(0, 1), Slots::reserved, Recovery::postpone),
-                   60000);
+            search(script, rules_for(script, bound + random.whole(0, 1), slots, Recovery::postpone), 60000);
         if (!result.complete) continue;
         ++looked_at;
         states += result.states;
@@ -303,7 +316,7 @@ TEST(EveryOrder, OfRandomTreesNeverLocksWithRecoveryWhateverTheSlots) {
         property::Random random(seed);
         const Networks networks = acyclic[random.whole(0, 1)];
         const Script script = random_script(random, networks);
-        const Slots slots = random.chance(0.5) ? Slots::free : Slots::reserved;
+        const Slots slots = Slots(random.whole(0, 2));
         const Result result =
             search(script, rules_for(script, random.whole(1, 2), slots, Recovery::postpone), 60000);
         if (!result.complete) continue;
