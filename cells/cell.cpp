@@ -47,6 +47,7 @@ Cycle Cell::step(Cycle now) {
     }
     finish_traversal(now);
     finish_shading(now);
+    move_overdue(now);
     // Replies of this cell and answers that pass through take turns when both want to go.
     if (replies_first_) {
         move_replies(now);
@@ -182,6 +183,7 @@ void Cell::move_answers(Cycle now) {
     int count = 0;
     for (int side = 0; side < side_count; ++side) {
         if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
+        if (answers_moved_ >> unsigned(side) & 1) continue;
         LinkIn* in = in_[std::size_t(side)];
         if (in->front(index).kind != Message::Kind::answer) continue;
         int place = count++;

@@ -91,6 +91,8 @@ class Cell {
     bool end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
     bool send_answer(const Answer& answer, Cycle now);
     Side route(const Answer& answer) const;
+    // cell_overdue.cpp
+    void move_overdue(Cycle now);
     // cell_shade.cpp: slots, own rays, shading unit
     void deliver(const Answer& answer, Cycle now);
     void deliver_to_slot(const Answer& answer, Cycle now);
@@ -157,8 +159,13 @@ class Cell {
     std::uint8_t own_attempts_ = 0;
     bool root_waits_ = false;  ///< the pixel's intensity is still to come
     bool root_to_send_ = false;
-    std::uint64_t precast_next_ = 0;    ///< voxel · sources + source
-    std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
+    /// Cycles that a message which waits to move is passed over by others; after that it goes before all of
+    /// them, oldest first. Without it a stream of notices can starve what would end it (deadlock.md, step 5).
+    static constexpr Cycle patience = 65536;
+    Cycle look_for_overdue_ = patience;  ///< cycle from which on to look for such messages
+    std::uint32_t answers_moved_ = 0;    ///< bit per side whose buffer of answers was read in this cycle
+    std::uint64_t precast_next_ = 0;     ///< voxel · sources + source
+    std::vector<std::uint64_t> asked_;   ///< memo: per voxel, sources already asked for
     std::uint64_t hash_ = 0;
     Cycle next_ = never;
     std::uint64_t operations_ = 0;  ///< of the units, for their random stalls

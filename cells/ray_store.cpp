@@ -4,8 +4,9 @@
 
 namespace raycell {
 
-RayStore::RayStore(int capacity, int generations, Slots policy) : capacity_(capacity), shared_(capacity) {
-    if (policy == Slots::reserved) {
+RayStore::RayStore(int capacity, int generations, Slots policy)
+    : capacity_(capacity), shared_(capacity), nested_(policy == Slots::nested) {
+    if (policy != Slots::free) {
         const int groups = std::max(1, std::min(capacity, generations));
         used_by_.assign(std::size_t(groups), 0);
         shared_ = capacity - groups;
@@ -23,14 +24,27 @@ int RayStore::borrowed() const {
     return sum;
 }
 
+/// The first group from `from` on up to which so many slots are taken that one for each deeper group is left;
+/// their number if there is none.
+std::size_t RayStore::full_from(std::size_t from) const {
+    int up_to = 0;
+    for (std::size_t g = 0; g < used_by_.size(); ++g) {
+        up_to += used_by_[g];
+        if (g >= from && up_to >= shared_ + 1 + int(g)) return g;
+    }
+    return used_by_.size();
+}
+
 bool RayStore::has_room(int generation) const {
     if (used_ >= capacity_) return false;
+    if (nested_) return full_from(group(generation)) == used_by_.size();
     // Where the reserved slot is taken: one of those free for all, if any is left.
     return used_by_.empty() || used_by_[group(generation)] == 0 || borrowed() < shared_;
 }
 
 bool RayStore::would_help(int held, int wanting) const {
     if (used_by_.empty()) return true;
+    if (nested_) return group(held) <= full_from(group(wanting));
     return group(held) == group(wanting) || used_by_[group(held)] > 1;
 }
 

@@ -31,7 +31,8 @@ struct Slot {
 
 /// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest
 /// is free for all; when M is smaller than their number, the deepest generations share the last (design,
-/// section 5).
+/// section 5). With `nested` a generation and those before it leave one for each deeper one together, and a
+/// deeper one may take all.
 class RayStore {
   public:
     RayStore(int capacity, int generations, Slots policy);
@@ -42,7 +43,7 @@ class RayStore {
     /// Whether allocate() would find a slot.
     bool has_room(int generation) const;
     /// Whether a slot that a ray of generation `held` gives back lets one of generation `wanting` in, where
-    /// there is no room now.
+    /// there is no room now; with `nested` perhaps only after others of the same kind.
     bool would_help(int held, int wanting) const;
 
     Slot& operator[](std::uint32_t index) { return slots_[index]; }
@@ -58,10 +59,12 @@ class RayStore {
   private:
     std::size_t group(int generation) const;
     int borrowed() const;
+    std::size_t full_from(std::size_t from) const;
 
     int capacity_;
-    int shared_;                          ///< slots free for all
-    std::vector<std::uint16_t> used_by_;  ///< per reserved group; empty with policy `free`
+    int shared_;  ///< slots beyond one for each group
+    bool nested_;
+    std::vector<std::uint16_t> used_by_;  ///< per group; empty with policy `free`
     std::vector<Slot> slots_;             ///< grows to `capacity`
     std::vector<std::uint32_t> free_;
     int used_ = 0;

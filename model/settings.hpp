@@ -16,8 +16,8 @@ enum class Shadows { per_hit, precast, memo };
 enum class ExteriorMode { none, host };
 enum class Networks { shared, split, quadrant, half };
 enum class Recovery { none, postpone };
-enum class Slots { reserved, free };
-enum class Numbers { fixed, exact };  ///< words of fixed length, or double precision
+enum class Slots { reserved, free, nested };  ///< which rays find a slot (cells/deadlock.md)
+enum class Numbers { fixed, exact };          ///< words of fixed length, or double precision
 enum class Engine { timed, untimed };
 enum class RunStage { load, trace };
 enum class Display { gouraud, phong };

@@ -194,8 +194,9 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
                  "which messages share a buffer");
     table.choice("recovery", m.recovery, {{"postpone", Recovery::postpone}, {"none", Recovery::none}},
                  "a ray that finds no slot: destroyed and sent again, or left waiting");
-    table.choice("slots", m.slots, {{"reserved", Slots::reserved}, {"free", Slots::free}},
-                 "slots kept by generation, or free for all");
+    table.choice("slots", m.slots,
+                 {{"reserved", Slots::reserved}, {"free", Slots::free}, {"nested", Slots::nested}},
+                 "slots kept by generation, free for all, or kept for deeper generations alone");
     table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
     table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
     table.number(

@@ -1,0 +1,51 @@
+// Who has waited too long goes first: the fairness that cells/deadlock.md asks of a cell.
+#include <algorithm>
+#include <tuple>
+
+#include "cells/cell.hpp"
+
+namespace raycell {
+
+/// Moves what has waited for more than `patience` cycles, oldest first, whatever it is; the usual order
+/// follows for the others. Looks for it now and then, and in every step while there is any.
+void Cell::move_overdue(Cycle now) {
+    answers_moved_ = 0;
+    if (now < look_for_overdue_) return;
+    enum Kind { answer, reply, ray };
+    std::vector<std::tuple<Cycle, Kind, std::size_t>> overdue;
+    const auto add = [&](Cycle since, Kind kind, std::size_t index) {
+        if (since < now && now - since > patience) overdue.emplace_back(since, kind, index);
+    };
+    const int index = env_.classes.answer;
+    for (int side = 0; side < side_count; ++side) {
+        if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
+        const LinkIn* in = in_[std::size_t(side)];
+        if (in->front(index).kind != Message::Kind::answer) continue;
+        add(in->arrival(index) + env_.costs().route_return, answer, std::size_t(side));
+    }
+    if (shading_.job == Shading::Job::direct_answer) add(shading_.done, reply, 0);
+    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
+        if (ray_store_[i].state == Slot::State::to_answer) add(ray_store_[i].changed, reply, 0);
+    }
+    for (std::size_t place = 0; place < place_count(); ++place) {
+        if (nothing_at(place)) continue;
+        const RayPacket* packet = packet_at(place);
+        if (packet && packet->stage == RayPacket::Stage::decided) add(packet->decided, ray, place);
+    }
+    look_for_overdue_ = overdue.empty() ? now + patience / 8 : now + 1;
+    std::sort(overdue.begin(), overdue.end());
+    for (const auto& [since, kind, at] : overdue) {
+        if (kind == answer) {
+            LinkIn& in = *in_[at];
+            const int held = in.occupancy(index);
+            move_answer(in, now);
+            if (in.occupancy(index) < held) answers_moved_ |= 1U << at;
+        } else if (kind == reply) {
+            move_replies(now);  // all of them: there are finitely many
+        } else {
+            move_ray(*packet_at(at), at, now);
+        }
+    }
+}
+
+}  // namespace raycell

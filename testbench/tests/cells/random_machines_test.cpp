@@ -1,0 +1,257 @@
+// At least 1000 random machines: each ends with a true verdict, loses no message, and where it completes it
+// has made the untimed picture, bit for bit. What cells/deadlock.md claims to end must end.
+#include "../truth/hand_made.hpp"
+#include "elaboration.hpp"
+
+namespace raycell {
+namespace {
+
+constexpr int cases = 24;
+constexpr int machines_per_case = 50;
+
+/// Mirrors, glass and matt rectangles anywhere in the cube and a little beyond it, with up to two sources.
+CellScene random_scene(property::Random& random, int width, int height) {
+    CellScene scene = hand_made::cube(width, height, random.uniform(1, 8));
+    scene.frame.viewer_at_infinity = random.chance(0.3);
+    scene.frame.eye = {random.uniform(-2, width + 2), random.uniform(-2, height + 2), -random.uniform(1, 9)};
+    const dvec3 size(width, height, scene.frame.depth);
+    const auto anywhere = [&] {
+        const double x = random.uniform(-0.2, 1.2), y = random.uniform(-0.2, 1.2), z = random.uniform(0, 1);
+        return size * dvec3(x, y, z);
+    };
+    for (int i = random.whole(0, 2); i > 0; --i) scene.sources.push_back({anywhere(), dvec3(0.7)});
+    const auto wall = [&](const Material& material, const dvec3& corner, const dvec3& u, const dvec3& v) {
+        hand_made::add_rectangle(scene, hand_made::add_object(scene, material), corner, u, v);
+    };
+    const auto material = [&] {
+        if (random.chance(0.5)) return hand_made::mirror(random.uniform(0.5, 1));
+        if (random.chance(0.4)) return hand_made::glass(random.uniform(0.4, 1), random.uniform(0.8, 1.5));
+        return hand_made::matt(0.8);
+    };
+    if (random.chance(0.6)) {  // facing mirrors: trees that come back to the same cells
+        const double lean = random.uniform(-0.3, 0.3) * width;
+        const dvec3 across(0, size.y, 0);
+        wall(hand_made::mirror(0.95), {0.02, 0, 0}, across, {lean + 0.3, 0, size.z});
+        wall(hand_made::mirror(0.95), {width - 0.02, 0, 0}, across, {lean - 0.3, 0, size.z});
+        wall(material(), {0, 0, 0.9 * size.z}, {size.x, 0, -0.5 * size.z}, across);
+    }
+    for (int i = random.whole(1, 4); i > 0; --i) {
+        std::mt19937_64& engine = random.engine();
+        wall(material(), anywhere(), hand_made::random_direction(engine) * random.uniform(1, 6),
+             hand_made::random_direction(engine) * random.uniform(1, 6));
+    }
+    for (const Polygon& polygon : scene.polygons) {
+        for (const dvec3& p : polygon.vertices) {
+            for (int axis = 0; axis < 3; ++axis) {
+                if (p[axis] < 0) scene.beyond[std::size_t(2 * axis)] = true;
+                if (p[axis] > size[axis]) scene.beyond[std::size_t(2 * axis + 1)] = true;
+            }
+        }
+    }
+    return scene;
+}
+
+struct Drawn {
+    PictureSettings settings;
+    MachineSettings machine;
+    std::unique_ptr<PlacedScene> placed;
+    int least = 1;  ///< the bound of cells/deadlock.md on M
+    std::string text;
+};
+
+void draw_picture(Drawn& drawn, property::Random& random) {
+    PictureSettings& s = drawn.settings;
+    const int shape = random.whole(0, 9);
+    s.width = shape == 0 ? 1 : random.whole(2, 7);
+    s.height = shape == 1 || shape == 2 ? 1 : random.whole(2, 6);
+    s.depth_levels = random.whole(1, 64);
+    s.hit = HitTest(random.whole(0, 4));
+    s.shadows = Shadows(random.whole(0, 2));
+    s.exterior = ExteriorMode(random.whole(0, 1));
+    s.max_depth = random.whole(0, 5);
+    s.min_weight = random.chance(0.3) ? 1.0 / 256 : 0;
+    s.numbers.arithmetic = random.chance(0.5) ? Numbers::exact : Numbers::fixed;
+    s.numbers.word_bits = random.whole(12, 24);
+    if (random.chance(0.25)) {
+        const char* const own[] = {"cornell", "facing_mirrors", "still_life"};
+        const char* const name = own[random.whole(0, 2)];
+        drawn.placed = place_own_scene(name, s);
+        drawn.text = std::string(name) + " ";
+        return;
+    }
+    drawn.placed = std::make_unique<PlacedScene>();
+    drawn.placed->scene = random_scene(random, s.width, s.height);
+    drawn.placed->scene.frame.depth_levels = s.depth_levels;
+    drawn.placed->truth =
+        std::make_unique<TruthRenderer>(drawn.placed->scene, TruthSettings{s.max_depth, s.min_weight});
+    drawn.placed->exterior = std::make_unique<ClassicalExterior>(drawn.placed->scene, *drawn.placed->truth);
+    drawn.text = "hand-made ";
+}
+
+void draw_machine(Drawn& drawn, property::Random& random) {
+    MachineSettings& m = drawn.machine;
+    m.buffer_depth = random.chance(0.6) ? 1 : random.whole(2, 4);
+    m.networks = Networks(random.whole(0, 3));
+    m.slots = random.chance(0.3) ? Slots::free : random.chance(0.5) ? Slots::reserved : Slots::nested;
+    m.recovery = random.chance(0.7) ? Recovery::postpone : Recovery::none;
+    m.ray_store = random.chance(0.4)    ? random.whole(1, drawn.least)
+                  : random.chance(0.15) ? 10000
+                                        : random.whole(drawn.least, drawn.least + 6);
+    m.link_bits = random.chance(0.3) ? random.whole(1, 16) : random.whole(17, 300);
+    m.exterior_processors = random.whole(1, 4);
+    m.exterior_latency = random.whole(1, 60);
+    m.seed = std::uint64_t(random.whole(1, 1000));
+    for (const auto& [name, member] : CostTable::entries()) {
+        if (random.chance(0.2)) m.costs.*member = std::uint32_t(random.whole(1, 40));
+    }
+    m.costs.backoff = std::uint32_t(random.whole(1, 16));  // short: a livelock is waited for
+    // What else only time depends on belongs here.
+}
+
+Drawn draw(std::uint64_t seed) {
+    property::Random random(seed);
+    Drawn drawn;
+    draw_picture(drawn, random);
+    drawn.least = std::max(1, waiting_generations(Context(drawn.placed->scene, drawn.settings)));
+    draw_machine(drawn, random);
+    const PictureSettings& s = drawn.settings;
+    const MachineSettings& m = drawn.machine;
+    const char* const networks[] = {"shared", "split", "quadrant", "half"};
+    const char* const slots[] = {"reserved, ", "free, ", "nested, "};
+    drawn.text += std::to_string(s.width) + "x" + std::to_string(s.height) + ", M " +
+                  std::to_string(m.ray_store) + " (bound " + std::to_string(drawn.least) + "), buffers " +
+                  std::to_string(m.buffer_depth) + ", " + networks[int(m.networks)] + ", " +
+                  slots[int(m.slots)] + (m.recovery == Recovery::none ? "none" : "postpone") + ", links " +
+                  std::to_string(m.link_bits) + ", shadows " + std::to_string(int(s.shadows)) +
+                  ", exterior " + std::to_string(int(s.exterior)) + ", generations " +
+                  std::to_string(s.max_depth);
+    return drawn;
+}
+
+/// Whether forwarding has no ring: in one row or one column nothing turns.
+bool acyclic(const Drawn& drawn) {
+    const bool line = drawn.settings.width == 1 || drawn.settings.height == 1;
+    const Networks n = drawn.machine.networks;
+    return n == Networks::half || n == Networks::quadrant || (n == Networks::split && line);
+}
+
+/// The theorems of cells/deadlock.md.
+bool must_end(const Drawn& drawn) {
+    const MachineSettings& m = drawn.machine;
+    const bool room_for_all = m.ray_store >= 10000;  // more than rays that ever wait in these arrays
+    const bool by_generation =
+        m.recovery == Recovery::postpone && m.slots != Slots::free && m.ray_store >= drawn.least;
+    return acyclic(drawn) && (room_for_all || by_generation);
+}
+
+/// Everything that moving would change, without asking the schedule.
+std::vector<std::uint64_t> standing(Machine& machine) {
+    const Counters& c = machine.environment().counters;
+    std::vector<std::uint64_t> all{c.rays_sent,    c.rays_answered,     c.rays_silent,   c.rays_destroyed,
+                                   c.answers_sent, c.answers_delivered, c.rays.ray_hops, c.rays.return_hops,
+                                   c.pixels_done,  c.traversal_cycles,  c.shading_cycles};
+    for (const auto& link : machine.array().links()) {
+        for (int index = 0; index < link->classes(); ++index) {
+            all.push_back(std::uint64_t(link->occupancy(index)));
+        }
+    }
+    for (const auto& cell : machine.array().cells()) {
+        all.push_back(std::uint64_t(cell->cell().ray_store().used()));
+    }
+    return all;
+}
+
+/// Far in the future, when every transfer, test and back-off is over, each cell gets three more cycles.
+void expect_nothing_can_move(Machine& machine) {
+    Scheduler& scheduler = machine.environment().scheduler;
+    const Cycle stopped = scheduler.now();
+    const auto before = standing(machine);
+    for (int turn = 1; turn <= 3; ++turn) {
+        scheduler.set_now(stopped + (Cycle(1) << 40) + Cycle(turn));
+        for (const auto& cell : machine.array().cells()) cell->cell().step(scheduler.now());
+    }
+    EXPECT_EQ(standing(machine), before) << "a deadlock in which something can move";
+    scheduler.set_now(stopped);
+}
+
+void expect_conserved(const Environment& environment, bool completed) {
+    const Counters& c = environment.counters;
+    const std::uint64_t open = c.rays_sent - c.rays_answered - c.rays_silent - c.rays_destroyed;
+    const std::uint64_t there = environment.pools.rays.in_use();
+    EXPECT_GE(open, there);
+    // The exterior's processors hold answers that can't leave.
+    EXPECT_LE(open, there + std::uint64_t(completed ? 0 : environment.machine.exterior_processors));
+    EXPECT_EQ(c.answers_sent - c.answers_delivered, environment.pools.answers.in_use());
+    EXPECT_EQ(c.loads_sent, c.loads_delivered);
+    if (!completed) return;
+    EXPECT_EQ(there, 0u);
+    EXPECT_EQ(environment.pools.answers.in_use(), 0u);
+}
+
+void expect_true_verdict(const Drawn& drawn, Machine& machine, const RunResult& result,
+                         const Picture& golden) {
+    const MachineSettings& m = drawn.machine;
+    const auto pixels = std::uint64_t(drawn.settings.width) * std::uint64_t(drawn.settings.height);
+    expect_conserved(machine.environment(), result.verdict == Verdict::completed);
+    switch (result.verdict) {
+        case Verdict::completed:
+            EXPECT_EQ(result.counters.pixels_done, pixels);
+            EXPECT_EQ(image_hash(result.picture), image_hash(golden));
+            EXPECT_LE(result.ray_store_peak, m.ray_store);
+            return;
+        case Verdict::deadlock:
+            EXPECT_FALSE(acyclic(drawn) && m.recovery == Recovery::postpone)
+                << "something can always move where no buffer waits for a slot";
+            EXPECT_FALSE(result.report.empty());
+            expect_nothing_can_move(machine);
+            break;
+        case Verdict::livelock:
+            EXPECT_EQ(m.recovery, Recovery::postpone);
+            EXPECT_GT(result.counters.rays_destroyed, 0u);
+            EXPECT_FALSE(result.report.empty());
+            break;
+        case Verdict::cycle_limit:
+        case Verdict::capacity:
+            ADD_FAILURE() << "neither has a limit here";
+    }
+    // In the precast phase no pixel is under way yet; while tracing one at least is missing.
+    EXPECT_LT(result.counters.pixels_done, pixels);
+    EXPECT_FALSE(must_end(drawn)) << name_of(result.verdict);
+}
+
+class TimedRandomMachines : public ::testing::TestWithParam<int> {};
+
+TEST_P(TimedRandomMachines, EndWithATrueVerdictAndWhereCompletedTheUntimedPicture) {
+    expect_first_elaboration();
+    const auto seeds =
+        property::seeds(1000000 + std::uint64_t(GetParam()) * machines_per_case, machines_per_case);
+    std::vector<Drawn> drawn;
+    std::vector<Machine*> machines;  // never destroyed: SystemC destroys ports in quadratic time
+    for (const std::uint64_t seed : seeds) {
+        drawn.push_back(draw(seed));
+        const Drawn& d = drawn.back();
+        machines.push_back(new Machine(("machine_" + std::to_string(seed)).c_str(), d.placed->scene,
+                                       d.settings, d.machine, d.placed->exterior.get()));
+    }
+    std::map<std::string, int> verdicts;
+    std::vector<Picture> goldens;
+    for (const Drawn& d : drawn) {
+        goldens.push_back(UntimedMachine(d.placed->scene, d.settings, d.placed->exterior.get()).render());
+    }
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+        SCOPED_TRACE(drawn[i].text + "; " + property::rerun(seeds[i]));
+        // sc_start returns when nobody has anything to do: the machines run one after the other.
+        const RunResult result = machines[i]->run();
+        ++verdicts[name_of(result.verdict)];
+        expect_true_verdict(drawn[i], *machines[i], result, goldens[i]);
+    }
+    std::string line = "seeds from " + std::to_string(seeds.front()) + ":";
+    for (const auto& [name, count] : verdicts) line += " " + std::to_string(count) + " " + name;
+    std::cout << line << "\n";
+    RecordProperty("verdicts", line);
+}
+
+INSTANTIATE_TEST_SUITE_P(Case, TimedRandomMachines, ::testing::Range(0, cases));
+
+}  // namespace
+}  // namespace raycell
