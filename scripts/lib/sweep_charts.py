@@ -18,7 +18,7 @@ def panels(rows, columns, width, height, **how):
 def finish(figure, title, handles, dpi, *paths):
     """Title above the panels, legend below them; a file for each path."""
     height = figure.get_figheight()
-    figure.suptitle(title, fontsize=11, y=1 - 0.1 / height)
+    figure.suptitle(title, fontsize=11, y=1 - 0.1 / height).set_in_layout(False)  # its room is reckoned below
     figure.legend(handles=handles, loc="lower center", ncol=min(len(handles), 12), frameon=False, columnspacing=1.4,
                   handletextpad=0.4)
     title_inches = 0.15 + 0.2 * len(title.splitlines())
