@@ -24,6 +24,8 @@ def arguments(words):
                                      "and charts of what locks, what ends, and what it costs.")
     parser.add_argument("--scene", metavar="FILE", type=pathlib.Path, help="the scene beside the synthetic traffic; "
                         "default: scenes/cornell.nff")
+    parser.add_argument("--limit", metavar="CYCLES", type=positive, default=design.SCENE_LIMIT, help="a scene's run is "
+                        "cut off after so many, loading included; default: %(default)s")
     parser.add_argument("--list", action="store_true", help="print the runs and whether they are finished")
     parser.add_argument("--only", metavar="TEXT", help="only the runs whose name contains it; without --out they are "
                         "only kept for the whole sweep")
@@ -82,7 +84,7 @@ def sweep(options, root, places, command):
         sys.exit(f"sweep_deadlock: {scene} is missing; expected a scene's file")
     if scene.stem == design.SYNTHETIC:
         sys.exit(f"sweep_deadlock: a scene can't be named '{design.SYNTHETIC}'; that is the other load")
-    blocks = design.quick_blocks(scene.stem) if options.quick else design.blocks(scene.stem)
+    blocks = design.quick_blocks(scene.stem) if options.quick else design.blocks(scene.stem, options.limit)
     every = design.runs_of(blocks)
     runs = [c for c in every if not options.only or options.only in c.label()]
     if not runs:

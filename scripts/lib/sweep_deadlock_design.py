@@ -11,8 +11,8 @@ SYNTHETIC = "synthetic"
 CELLS = 64
 OTHER_CELLS = {16: SEEDS, 32: SEEDS, 128: SEEDS[:2]}
 FULL_CELLS = 16  # of the runs that are waited for to their verdict, however long that takes
-LIMITS = {SYNTHETIC: 300_000}  # cycles, loading included
-SCENE_LIMIT = 1_000_000
+LIMIT = 200_000  # cycles, loading included: several times what the slowest run that ends takes
+SCENE_LIMIT = 250_000
 GENERATIONS = {SYNTHETIC: 3}  # that may have to wait: the bound of design section 5
 SCENE_GENERATIONS = 5  # max-depth 4, and the last waits for its shadow rays
 MODES = [("none", "reserved"), ("none", "free"), ("postpone", "reserved"), ("postpone", "free")]
@@ -66,17 +66,17 @@ def seeds_of(load, recovery):
 
 
 def limited(load, cells=CELLS, limit=None, **factors):
-    return Configuration(load, cells, max_cycles=limit or LIMITS.get(load, SCENE_LIMIT), **factors)
+    return Configuration(load, cells, max_cycles=limit or LIMIT, **factors)
 
 
-def main_block(load):
-    return [limited(load, networks=networks, buffer=depth, ray_store=m, recovery=recovery, seed=seed)
+def main_block(load, limit):
+    return [limited(load, CELLS, limit, networks=networks, buffer=depth, ray_store=m, recovery=recovery, seed=seed)
             for networks in NETWORKS for depth in DEPTHS for m in SLOTS for recovery in ["none", "postpone"]
             for seed in seeds_of(load, recovery)]
 
 
-def free_block(load):
-    return [limited(load, networks=networks, ray_store=m, recovery=recovery, slots="free", seed=seed)
+def free_block(load, limit):
+    return [limited(load, CELLS, limit, networks=networks, ray_store=m, recovery=recovery, slots="free", seed=seed)
             for networks in SAFE_NETWORKS for m in FEW_SLOTS for recovery in ["none", "postpone"]
             for seed in seeds_of(load, recovery)]
 
@@ -92,13 +92,13 @@ def full_block():
             for networks in NETWORKS for m in [1, 2, 3, 4] for seed in SEEDS[:2]]
 
 
-def blocks(scene):
-    """The whole design as {title: configurations}."""
+def blocks(scene, limit=SCENE_LIMIT):
+    """The whole design as {title: configurations}; `limit`: cycles of a scene's run."""
     return {
-        "synthetic: networks x buffer depth x M x recovery x seeds": main_block(SYNTHETIC),
-        f"{scene}: networks x buffer depth x M x recovery x seeds": main_block(scene),
-        "synthetic: free slots": free_block(SYNTHETIC),
-        f"{scene}: free slots": free_block(scene),
+        "synthetic: networks x buffer depth x M x recovery x seeds": main_block(SYNTHETIC, LIMIT),
+        f"{scene}: networks x buffer depth x M x recovery x seeds": main_block(scene, limit),
+        "synthetic: free slots": free_block(SYNTHETIC, LIMIT),
+        f"{scene}: free slots": free_block(scene, limit),
         "synthetic: array size": size_block(),
         "synthetic: to the verdict, without a limit of cycles": full_block(),
     }
@@ -122,9 +122,9 @@ def cost(configuration):
     """Rough processor seconds of a run, to start the long ones first and to say how long the rest will take."""
     c = configuration
     size = (c.cells / CELLS) ** 2
-    starved = c.ray_store < 3 and c.recovery == "postpone"
     if not c.max_cycles:
-        return 9.0 if starved else 1.0
+        return 4.0 if c.ray_store == 1 else 0.3
+    starved = c.recovery == "postpone" and (c.ray_store == 1 or (c.networks == "shared" and not c.synthetic))
     if c.synthetic:
-        return 0.05 + size * ((5.0 if c.ray_store == 1 and c.networks in SAFE_NETWORKS else 1.2) if starved else 0.6)
-    return 0.3 + size * (1.5 if starved else 0.9)
+        return 0.05 + size * (3.5 if starved else 1.0 if c.ray_store == 2 else 0.7)
+    return 0.2 + size * (2.0 if starved else 0.8)
