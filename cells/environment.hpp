@@ -59,12 +59,13 @@ struct Environment {
     CellObserver* observer = nullptr;  ///< told what every cell does; null: nobody
     bool draining = false;  ///< no cell sends new rays: what still stands in a buffer at the end is locked
 
-    /// The scene must outlive the environment; the settings are copied.
+    /// The scene (and the traffic, which may be null) must outlive the environment; the settings are copied.
     Environment(const CellScene& scene, const PictureSettings& picture_settings,
-                const MachineSettings& machine_settings, Scheduler& s, Picture& p)
+                const MachineSettings& machine_settings, Scheduler& s, Picture& p,
+                const SyntheticTraffic* traffic = nullptr)
         : settings(picture_settings),
           machine(machine_settings),
-          context(scene, settings),
+          context(scene, settings, traffic),
           bits(message_bits(settings, machine, context.arithmetic.formats())),
           classes(buffer_classes(machine.networks)),
           scheduler(s),

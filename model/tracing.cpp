@@ -4,6 +4,9 @@
 #include <bitset>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
+
+#include "model/traffic.hpp"
 
 namespace raycell {
 namespace {
@@ -55,6 +58,10 @@ Ray secondary_ray(const Context& context, const CellStore& store, const Ray& par
                   const HitSetup& setup, RayKind kind, const dvec3& direction, double share, int x, int y) {
     Ray ray = child_of(parent, kind, kind == RayKind::reflected ? 0 : 1, x, y);
     ray.weight = context.arithmetic.product(context.arithmetic.formats().unit, parent.weight, share);
+    if (context.traffic) {
+        context.traffic->start_child(ray, parent, context, store, setup);
+        return ray;
+    }
     set_direction(ray, direction, context.arithmetic);
     leave_surface(ray, context, setup.local, store.voxels[hit.voxel]);
     return ray;
@@ -78,8 +85,17 @@ Material hold(const Material& material, const Arithmetic& arithmetic) {
     return held;
 }
 
-Context::Context(const CellScene& placed, const PictureSettings& picture_settings)
-    : scene(placed), settings(picture_settings), arithmetic(settings.numbers, extent_of(placed.frame)) {
+Context::Context(const CellScene& placed, const PictureSettings& picture_settings,
+                 const SyntheticTraffic* synthetic)
+    : scene(placed),
+      settings(picture_settings),
+      arithmetic(settings.numbers, extent_of(placed.frame)),
+      traffic(synthetic) {
+    if (traffic && (!arithmetic.exact() || settings.exterior != ExteriorMode::none ||
+                    settings.shadows != Shadows::per_hit || settings.stage != RunStage::trace)) {
+        throw std::invalid_argument(
+            "synthetic traffic: expected exact arithmetic, no exterior, shadows per hit, and tracing");
+    }
     const Formats& f = arithmetic.formats();
     for (const Material& material : placed.objects) objects.push_back(hold(material, arithmetic));
     for (const Source& source : placed.sources) {
@@ -135,6 +151,7 @@ std::vector<std::string> range_warnings(const Context& context) {
 }
 
 Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context) {
+    if (context.traffic) return context.traffic->visit_cell(store, ray, context);
     const Arithmetic& arithmetic = context.arithmetic;
     Visit visit;
     if (ray.outside) {
@@ -252,6 +269,7 @@ dvec3 normal_at(const Voxel& voxel, const dvec3& local, const Arithmetic& arithm
 
 HitSetup set_up_hit(const Context& context, const CellStore& store, const Ray& ray, const CellHit& hit, int x,
                     int y) {
+    if (context.traffic) return context.traffic->set_up_hit(context, store, ray, hit, x, y);
     const Voxel& voxel = store.voxels[hit.voxel];
     const Material& material = context.objects[voxel.object];
     const Arithmetic& arithmetic = context.arithmetic;
@@ -296,6 +314,10 @@ Ray primary_ray(const Context& context, int x, int y) {
     ray.id = (std::uint64_t(y) * std::uint64_t(frame.width) + std::uint64_t(x)) << 32;
     ray.home_x = std::uint16_t(x);
     ray.home_y = std::uint16_t(y);
+    if (context.traffic) {
+        context.traffic->start_primary(ray, context, x, y);
+        return ray;
+    }
     ray.position = {0.5, 0.5, 0};
     const Arithmetic& arithmetic = context.arithmetic;
     const dvec3 direction = arithmetic.exact() || frame.viewer_at_infinity
@@ -322,6 +344,10 @@ Ray refracted_ray(const Context& context, const CellStore& store, const Ray& par
 Ray shadow_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
                const HitSetup& setup, std::size_t source, int x, int y) {
     Ray ray = child_of(parent, RayKind::shadow, unsigned(source), x, y);
+    if (context.traffic) {
+        context.traffic->start_child(ray, parent, context, store, setup);
+        return ray;
+    }
     const SourceView view = view_source(setup.point, context.sources[source], context.arithmetic);
     set_direction(ray, view.direction, context.arithmetic);
     ray.reach = context.arithmetic.hold_reach(view.distance);
@@ -351,8 +377,10 @@ Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32
 dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t object, std::uint64_t lit,
                 const dvec3& reflected, const dvec3& refracted) {
     const Material& material = context.objects[object];
-    const dvec3 local = local_intensity(setup.point, material, context.sources.data(), context.sources.size(),
-                                        lit & setup.facing, context.arithmetic);
+    const dvec3 local = context.traffic
+                            ? context.traffic->local_intensity(setup, lit & setup.facing)
+                            : local_intensity(setup.point, material, context.sources.data(),
+                                              context.sources.size(), lit & setup.facing, context.arithmetic);
     return combine_intensity(local, material, reflected, refracted, context.arithmetic);
 }
 

@@ -7,6 +7,8 @@
 
 namespace raycell {
 
+class SyntheticTraffic;
+
 /// What every cell knows once the scene is loaded: objects' features, sources, background and viewer as the
 /// machine's arithmetic holds them. `scene` keeps them as they are, for the exterior.
 struct Context {
@@ -17,11 +19,14 @@ struct Context {
     std::vector<Source> sources;
     dvec3 background{0, 0, 0};
     dvec3 eye{0, 0, 0};
-    double depth = 1;          ///< of the cube, cell widths
-    double normal_offset = 0;  ///< cells
+    double depth = 1;                           ///< of the cube, cell widths
+    double normal_offset = 0;                   ///< cells
+    const SyntheticTraffic* traffic = nullptr;  ///< set: what rays meet is drawn, not loaded (traffic.hpp)
 
-    /// Both must outlive it. Throws std::invalid_argument for numbers that Arithmetic refuses.
-    Context(const CellScene& placed, const PictureSettings& picture_settings);
+    /// All must outlive it. Throws std::invalid_argument for numbers that Arithmetic refuses, and for
+    /// settings that synthetic traffic has nothing for: see traffic_picture().
+    Context(const CellScene& placed, const PictureSettings& picture_settings,
+            const SyntheticTraffic* synthetic = nullptr);
 };
 
 /// What of the scene lies outside the range of the machine's words, for standard error: what it is, and what

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "model/traffic.hpp"
+
 namespace raycell {
 
 void count_ray(RayCounts& counts, RayKind kind) {
@@ -27,13 +29,19 @@ void count_ray(RayCounts& counts, RayKind kind) {
 }
 
 UntimedMachine::UntimedMachine(const CellScene& scene, const PictureSettings& settings,
-                               const ExteriorTracer* exterior)
+                               const ExteriorTracer* exterior, const SyntheticTraffic* traffic)
     : settings_(settings),
-      context_(scene, settings_),
+      context_(scene, settings_, traffic),
       exterior_(exterior),
       cells_(load_array(scene, settings_, context_.arithmetic, &loaded_)) {
     if (settings.exterior == ExteriorMode::host && settings.stage == RunStage::trace && !exterior) {
         throw std::invalid_argument("exterior 'host' needs a tracer for what lies outside the cube");
+    }
+    if (!traffic) return;
+    for (int y = 0; y < scene.frame.height; ++y) {
+        for (int x = 0; x < scene.frame.width; ++x) {
+            SyntheticTraffic::furnish(cell({x, y}), scene.frame, x, y);
+        }
     }
 }
 

@@ -29,8 +29,9 @@ class UntimedMachine {
   public:
     /// `exterior` may be null when settings.exterior is none, or nothing is traced. Loads the array. The
     /// scene must outlive the machine; the settings are copied. Throws std::invalid_argument without the
-    /// exterior it needs.
-    UntimedMachine(const CellScene& scene, const PictureSettings& settings, const ExteriorTracer* exterior);
+    /// exterior it needs. With `traffic` what rays meet is drawn; it must outlive the machine.
+    UntimedMachine(const CellScene& scene, const PictureSettings& settings, const ExteriorTracer* exterior,
+                   const SyntheticTraffic* traffic = nullptr);
 
     /// Traces (or, with --stage load, displays) every pixel; `progress` is called after each row.
     Picture render(const std::function<void(int row)>& progress = {});

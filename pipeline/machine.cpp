@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "model/loading.hpp"
+#include "model/traffic.hpp"
 
 namespace raycell {
 namespace {
@@ -34,11 +35,12 @@ const char* name_of(Verdict verdict) {
 }
 
 Machine::Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
-                 const MachineSettings& machine, const ExteriorTracer* tracer)
+                 const MachineSettings& machine, const ExteriorTracer* tracer,
+                 const SyntheticTraffic* traffic)
     : sc_module(name),
       scheduler_("scheduler", sc_core::sc_time(1e3 / machine.clock_mhz, sc_core::SC_NS)),
       picture_(scene.frame.width, scene.frame.height),
-      environment_(scene, settings, machine, scheduler_, picture_),
+      environment_(scene, settings, machine, scheduler_, picture_, traffic),
       geometry_("geometry", environment_),
       precomputation_("precomputation", environment_),
       distribution_("distribution", environment_),
@@ -163,6 +165,12 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
     result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
     for (const auto& link : array_.links()) link->reset_statistics();
+    if (environment_.context.traffic) {
+        for (const auto& cell : array_.cells()) {
+            Cell& c = cell->cell();
+            SyntheticTraffic::furnish(c.store(), environment_.context.scene.frame, c.x(), c.y());
+        }
+    }
     if (settings.shadows != Shadows::per_hit) {
         for (const auto& cell : array_.cells()) reset_shadow_bits(cell->cell().store());
     }

@@ -75,9 +75,11 @@ struct RunProgress {
 
 class Machine : public sc_core::sc_module {
   public:
-    /// `tracer` may be null where nothing is handed to the exterior. All arguments must outlive the machine.
+    /// `tracer` may be null where nothing is handed to the exterior. With `traffic` what rays meet is drawn
+    /// (model/traffic.hpp). All arguments must outlive the machine.
     Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
-            const MachineSettings& machine, const ExteriorTracer* tracer);
+            const MachineSettings& machine, const ExteriorTracer* tracer,
+            const SyntheticTraffic* traffic = nullptr);
 
     /// Runs load, precast and trace to a verdict. Call once.
     RunResult run(std::function<void(const RunProgress&)> progress = {});

@@ -7,8 +7,9 @@ import sys
 
 import chart_accuracy_design as design
 import chart_accuracy_rows as rows
-from chart_accuracy_runs import Cache, Stopped, Sweep
+from chart_accuracy_runs import Sweep
 from chart_accuracy_tables import document
+from sweep_runs import Stopped
 
 
 def positive(word):
@@ -88,11 +89,11 @@ def sweep(options, root, places, command):
         sys.exit(f"chart_accuracy: {program} is not a program; expected raycell")
     folder = options.folder or root.parent / "shared" / "scenes" / "spd"
     scenes = scene_files(root, folder, dict.fromkeys(c.scene for c in every))
-    runner = Sweep(program, scenes, Cache(places.cache, program))
+    runner = Sweep(program, scenes, places.cache)
     if options.list:
         print_list(blocks, runs, runner.finished(runs))
         return 0
-    records, failures = runner.make(runs, options.jobs)
+    records, failures = runner.make_all(runs, options.jobs)
     for configuration, reason in failures.items():
         print(f"chart_accuracy: {configuration.label()} failed: {reason}", file=sys.stderr)
     stuck = {c: r["report"]["verdict"] for c, r in records.items() if r["report"]["verdict"] != "completed"}

@@ -1,139 +1,63 @@
-"""Makes the runs of a sweep on all cores and keeps each finished one, so that a stopped sweep goes on where it was."""
-import concurrent.futures
+"""Makes the runs of the accuracy sweep, each compared with the picture of its machine in exact arithmetic."""
 import dataclasses
-import fcntl
-import hashlib
 import json
-import os
 import pathlib
-import shutil
-import subprocess
-import sys
 import threading
 import time
 
 from chart_accuracy_design import cost
-
-RUN_SECONDS = 1800  # a run that takes longer is stuck
-
-
-class Failure(Exception):
-    """A run that gave no result."""
+from sweep_runs import Cache, Runner, hash_of, is_number
 
 
-class Stopped(Exception):
-    """The sweep was told to stop."""
-
-
-def hash_of(path):
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
-
-
-def is_number(value):
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-class Cache:
-    """Finished runs of one program, a file each, written beside and renamed."""
-
-    def __init__(self, folder, program):
-        self.folder = folder / f"accuracy-{hash_of(program)}"
-        self.work = self.folder / "work"
-        self.lock = None
-
-    def occupy(self):
-        """Lets one sweep at a time work here, and clears away what killed runs left."""
-        self.folder.mkdir(parents=True, exist_ok=True)
-        self.lock = open(self.folder / "lock", "w")
-        try:
-            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            sys.exit(f"chart_accuracy: another sweep is at work in {self.folder}; wait for it or stop it")
-        shutil.rmtree(self.work, ignore_errors=True)
-        self.work.mkdir()
-
-    def path(self, configuration, timed):
-        return self.folder / f"{configuration.label()}.{'timed' if timed else 'untimed'}.json"
-
-    def load(self, configuration, timed, scene_hash):
-        """The finished run, or None; whatever is not the whole result of just this run counts as none."""
-        try:
-            record = json.loads(self.path(configuration, timed).read_text())
-            whole = (record["configuration"] == dataclasses.asdict(configuration) and record["timed"] == timed
-                     and record["scene_hash"] == scene_hash and is_number(record["seconds"])
-                     and is_number(record["report"]["accuracy"]["psnr_db"])
-                     and (configuration.arithmetic == "exact" or is_number(record["arithmetic"]["psnr_db"])))
-        except (OSError, ValueError, KeyError, TypeError):
-            return None
-        return record if whole else None
-
-    def store(self, configuration, timed, record):
-        path = self.path(configuration, timed)
-        partial = self.work / path.name
-        partial.write_text(json.dumps(record, indent=1))
-        os.replace(partial, path)
-
-
-class Sweep:
+class Sweep(Runner):
     """Runs the program for each configuration; pictures are kept only until they are compared."""
 
-    def __init__(self, program, scenes, cache):
+    def __init__(self, program, scenes, folder):
+        super().__init__(Cache(folder / f"accuracy-{hash_of(program)}", "chart_accuracy"))
         self.program = program
-        self.cache = cache
         self.scenes = scenes  # {name: path}
         self.scene_hashes = {name: hash_of(path) for name, path in scenes.items()}
-        self.stopping = threading.Event()
-        self.guard = threading.Lock()
-        self.children = set()
+        self.runs = {}  # {configuration: timed}
         self.exact_locks = {}
         self.exact_users = {}
 
+    @staticmethod
+    def name_of(configuration, timed):
+        return f"{configuration.label()}.{'timed' if timed else 'untimed'}"
+
+    def load(self, configuration, timed):
+        """The finished run, or None; whatever is not the whole result of just this run counts as none."""
+        record = self.cache.read(self.name_of(configuration, timed))
+        try:
+            whole = (record["configuration"] == dataclasses.asdict(configuration) and record["timed"] == timed
+                     and record["scene_hash"] == self.scene_hashes[configuration.scene]
+                     and is_number(record["seconds"]) and is_number(record["report"]["accuracy"]["psnr_db"])
+                     and (configuration.arithmetic == "exact" or is_number(record["arithmetic"]["psnr_db"])))
+        except (KeyError, TypeError):
+            return None
+        return record if whole else None
+
     def finished(self, runs):
         """{configuration: record} of what is in the cache."""
-        found = {c: self.cache.load(c, timed, self.scene_hashes[c.scene]) for c, timed in runs.items()}
+        found = {c: self.load(c, timed) for c, timed in runs.items()}
         return {c: record for c, record in found.items() if record}
 
-    def make(self, runs, jobs):
-        """Makes the runs that are not in the cache; returns all records and {configuration: what went wrong}."""
-        self.cache.occupy()
-        records, failures = self.finished(runs), {}
-        pending = sorted((c for c in runs if c not in records), key=lambda c: -cost(c, runs[c]))
+    def make_all(self, runs, jobs):
+        """Makes the runs {configuration: timed} that are not in the cache; returns all records and {configuration:
+        what went wrong}."""
+        self.runs = runs
+        return self.make(runs, jobs, lambda configuration: cost(configuration, runs[configuration]))
+
+    def prepare(self, pending):
         for configuration in pending:
             exact = configuration.exact()
             self.exact_locks.setdefault(exact, threading.Lock())
             self.exact_users[exact] = self.exact_users.get(exact, 0) + 1
-        progress = Progress(len(runs), len(records), sum(cost(c, runs[c]) for c in pending))
-        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-            futures = {pool.submit(self.make_one, c, runs[c]): c for c in pending}
-            try:
-                for future in concurrent.futures.as_completed(futures):
-                    configuration = futures[future]
-                    error = future.exception()
-                    if error is None:
-                        records[configuration] = future.result()
-                    elif isinstance(error, (Failure, OSError)):
-                        failures[configuration] = str(error)
-                    else:
-                        raise error
-                    progress.step(cost(configuration, runs[configuration]), len(failures))
-            except BaseException:
-                self.stop(pool)
-                raise
-            finally:
-                progress.end()
-        shutil.rmtree(self.cache.work, ignore_errors=True)
-        return records, failures
 
-    def stop(self, pool):
-        self.stopping.set()
-        pool.shutdown(wait=False, cancel_futures=True)
-        with self.guard:
-            for child in self.children:
-                child.kill()
-
-    def make_one(self, configuration, timed):
+    def make_one(self, configuration):
         """One run and its comparison with the exact machine's picture; stores and returns its record."""
         start = time.monotonic()
+        timed = self.runs[configuration]
         exact = configuration.exact()
         try:
             if configuration == exact and not timed:
@@ -151,7 +75,7 @@ class Sweep:
         record = {"configuration": dataclasses.asdict(configuration), "timed": timed,
                   "scene_hash": self.scene_hashes[configuration.scene], "seconds": time.monotonic() - start,
                   "report": report, "arithmetic": arithmetic}
-        self.cache.store(configuration, timed, record)
+        self.cache.write(self.name_of(configuration, timed), record)
         return record
 
     def picture_of(self, exact):
@@ -178,65 +102,11 @@ class Sweep:
             pathlib.Path(f"{prefix}{suffix}").unlink(missing_ok=True)
 
     def render(self, configuration, engine, prefix):
+        """Codes 3 and 4 are verdicts of a run, and the report says which."""
         scene = self.scenes[configuration.scene]
-        self.run(["render", str(scene), "-o", str(prefix), "--engine", engine, "--truth", "--quiet",
-                  *configuration.options()], may_end_early=True)
+        self.execute([str(self.program), "render", str(scene), "-o", str(prefix), "--engine", engine, "--truth",
+                      "--quiet", *configuration.options()], codes=(0, 3, 4))
         return json.loads(pathlib.Path(f"{prefix}.json").read_text())
 
     def compare(self, picture, reference):
-        return json.loads(self.run(["compare", str(picture), str(reference), "--json"]))
-
-    def run(self, words, may_end_early=False):
-        """Runs the program; codes 3 and 4 are verdicts of a run, and the report says which."""
-        command = [str(self.program), *words]
-        if shutil.which("setpriv"):  # a killed sweep takes its runs along
-            command = ["setpriv", "--pdeathsig", "KILL", *command]
-        with self.guard:
-            if self.stopping.is_set():
-                raise Stopped()
-            child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            self.children.add(child)
-        try:
-            output, errors = child.communicate(timeout=RUN_SECONDS)
-        except subprocess.TimeoutExpired:
-            child.kill()
-            child.communicate()
-            raise Failure(f"not finished after {RUN_SECONDS} s") from None
-        finally:
-            with self.guard:
-                self.children.discard(child)
-        if self.stopping.is_set():
-            raise Stopped()
-        if child.returncode != 0 and not (may_end_early and child.returncode in (3, 4)):
-            last = errors.strip().splitlines()[-1:] or ["no message"]
-            raise Failure(f"exit code {child.returncode}: {last[0]}")
-        return output
-
-
-class Progress:
-    """Done, all and time left on standard error: rewritten in place on a terminal, now and then elsewhere."""
-
-    def __init__(self, runs, done, pending_cost):
-        self.all, self.done, self.left = runs, done, pending_cost
-        self.all_cost = pending_cost
-        self.start = self.shown = time.monotonic()
-        if done:
-            print(f"{done} of {runs} runs were finished before", file=sys.stderr)
-
-    def step(self, run_cost, failures):
-        self.done += 1
-        self.left -= run_cost
-        now = time.monotonic()
-        terminal = sys.stderr.isatty()
-        if not terminal and now - self.shown < 10 and self.done < self.all:
-            return
-        self.shown = now
-        left = round((now - self.start) * max(self.left, 0) / max(self.all_cost - self.left, 1e-9))
-        failed = f", {failures} failed" if failures else ""
-        print(f"{chr(13) if terminal else ''}{self.done} of {self.all} runs, "
-              f"{left // 60}:{left % 60:02d} min left{failed}   ",
-              end="" if terminal else "\n", file=sys.stderr, flush=True)
-
-    def end(self):
-        if sys.stderr.isatty():
-            print(file=sys.stderr)
+        return json.loads(self.execute([str(self.program), "compare", str(picture), str(reference), "--json"]))

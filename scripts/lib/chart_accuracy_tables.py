@@ -2,27 +2,14 @@
 from chart_accuracy_design import (OPERATOR_SCENES, OWN_SCENES, RUNGS, SHADOWS, Configuration,
                                    operator_variants)
 from chart_accuracy_rows import fewest_bits, name_of, pareto
+from sweep_tables import NOTHING, count, table
 
 PAPER_VOXEL_BITS = 40 * 8
 PAPER_CELL_BITS = 5 * 1024 * 8
-NOTHING = "–"
-
-
-def table(head, lines):
-    """A table of Markdown; lines of nothing but their first cell are left out."""
-    kept = [line for line in lines if any(cell != NOTHING for cell in line[1:])]
-    if not kept:
-        return ""
-    rows = [head, ["---"] * len(head), *kept]
-    return "\n".join("| " + " | ".join(str(cell) for cell in row) + " |" for row in rows)
 
 
 def decibel(row):
     return f"{row.psnr_total_db:.1f}" if row else NOTHING
-
-
-def count(value):
-    return NOTHING if value is None else f"{value:,.0f}"
 
 
 def fewest_table(results):

@@ -91,6 +91,18 @@ class Reader {
 
 }  // namespace
 
+std::string configuration_named(const std::vector<std::string>& words) {
+    std::string path;
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        if (words[i].rfind("--config=", 0) == 0) path = words[i].substr(9);
+        if (words[i] == "--config") {
+            if (i + 1 == words.size()) throw UsageError("--config: expected a file");
+            path = words[i + 1];
+        }
+    }
+    return path;
+}
+
 std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app,
                                              const CLI::App* other) {
     return Reader(path, app, other).arguments();

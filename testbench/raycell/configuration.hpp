@@ -8,6 +8,10 @@
 
 namespace raycell {
 
+/// The file of the last --config among the arguments, empty if there is none; the first is a subcommand or
+/// the program. Throws UsageError where the file is missing.
+std::string configuration_named(const std::vector<std::string>& words);
+
 /// Turns a configuration file into arguments for `app`. Keys that only `other` knows are passed over, if it
 /// is given: a file that `render` wrote serves `truth` too. Throws UsageError naming file, line and key for
 /// what is not TOML, for keys that the command doesn't know and for values of the wrong kind.

@@ -59,9 +59,9 @@ int exit_code(Verdict verdict) {
     return exit_usage;
 }
 
-void explain(const RunResult& result) {
+void explain(const RunResult& result, const char* program) {
     if (result.verdict == Verdict::completed) return;
-    std::cerr << "raycell: verdict " << name_of(result.verdict);
+    std::cerr << program << ": verdict " << name_of(result.verdict);
     if (result.verdict == Verdict::capacity) {
         std::cerr << ": " << result.storage.overflowed << " voxels did not fit (--voxel-capacity)";
     }

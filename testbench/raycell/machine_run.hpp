@@ -16,6 +16,6 @@ void show_progress(const RunProgress& progress);
 int exit_code(Verdict verdict);
 
 /// Says on standard error why a run was not completed; nothing if it was.
-void explain(const RunResult& result);
+void explain(const RunResult& result, const char* program = "raycell");
 
 }  // namespace raycell

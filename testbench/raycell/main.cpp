@@ -26,19 +26,6 @@ void parse(CLI::App& program, std::vector<std::string> words) {
     program.parse(words);
 }
 
-/// The file of the last --config, empty if there is none.
-std::string configuration_named(const std::vector<std::string>& words) {
-    std::string path;
-    for (std::size_t i = 1; i < words.size(); ++i) {
-        if (words[i].rfind("--config=", 0) == 0) path = words[i].substr(9);
-        if (words[i] == "--config") {
-            if (i + 1 == words.size()) throw UsageError("--config: expected a file");
-            path = words[i + 1];
-        }
-    }
-    return path;
-}
-
 /// The arguments with those of --config put before the command line's own, which so take precedence.
 std::vector<std::string> with_configuration(CLI::App& program, std::vector<std::string> words,
                                             const CLI::App& command) {

@@ -87,6 +87,37 @@ void OptionTable::cells(const std::string& name, std::vector<CellRange>& target,
                         }});
 }
 
+void OptionTable::shares(const std::string& name, double& p, double& q, const std::string& help) {
+    const auto share = [](const std::string& word, double& value) {
+        return parse_number(word, value) && value >= 0 && value <= 1;
+    };
+    const auto parse = [share](const std::string& word, double& first, double& second) {
+        const auto comma = word.find(',');
+        second = 0;
+        if (comma == std::string::npos) return share(word, first);
+        return share(word.substr(0, comma), first) && share(word.substr(comma + 1), second);
+    };
+    const auto check = [parse](const std::string& word) -> std::string {
+        double first = 0;
+        double second = 0;
+        if (parse(word, first, second)) return "";
+        return "expected P or P,Q, each from 0 to 1, not '" + printable(word) + "'";
+    };
+    const auto text = [&p, &q] {
+        const auto shortest = [](double value) {
+            char digits[32];
+            return std::string(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+        };
+        return shortest(p) + (q != 0 ? "," + shortest(q) : "");
+    };
+    app_.add_option_function<std::string>(
+            "--" + name, [parse, &p, &q](const std::string& word) { parse(word, p, q); }, help)
+        ->check(CLI::Validator(check, "P[,Q]"))
+        ->default_str(text())
+        ->take_last();
+    entries_.push_back({name, [text] { return nlohmann::ordered_json(text()); }});
+}
+
 void OptionTable::costs(CostTable& table) {
     std::string names;
     for (const auto& [name, member] : CostTable::entries()) {
@@ -139,6 +170,29 @@ void add_scene_options(OptionTable& table, RenderOptions& options) {
     table.flag("quiet", options.quiet, "no progress, no summary");
 }
 
+void add_communication_options(OptionTable& table, MachineSettings& m) {
+    table.number("ray-store", m.ray_store, 1, 1024, "M, rays that a cell can store, slots");
+    table.number("buffer", m.buffer_depth, 1, 1024, "depth of every buffer, messages");
+    table.choice("networks", m.networks,
+                 {{"half", Networks::half},
+                  {"quadrant", Networks::quadrant},
+                  {"split", Networks::split},
+                  {"shared", Networks::shared}},
+                 "which messages share a buffer");
+    table.choice("recovery", m.recovery, {{"postpone", Recovery::postpone}, {"none", Recovery::none}},
+                 "a ray that finds no slot: destroyed and sent again, or left waiting");
+    table.choice("slots", m.slots,
+                 {{"reserved", Slots::reserved}, {"free", Slots::free}, {"nested", Slots::nested}},
+                 "slots kept by generation, free for all, or kept for deeper generations alone");
+    table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
+    table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
+    table.number(
+        "stall", m.stall, 0.0, 0.9,
+        "probability that a transfer or an operation takes a cycle more, and again; drawn by --seed");
+    table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62,
+                 "timed engine: stop after so many cycles; 0: never");
+}
+
 void add_machine_options(OptionTable& table, RenderOptions& options) {
     PictureSettings& p = options.picture;
     MachineSettings& m = options.machine;
@@ -184,26 +238,7 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     table.number("reciprocal-table", o.reciprocal_table, 4, 4096, "its entries, a power of two");
     table.number("root-table", o.root_table, 4, 4096, "its entries, a power of two");
     table.number("power-table", o.power_table, 4, 4096, "entries of each of its two tables, a power of two");
-    table.number("ray-store", m.ray_store, 1, 1024, "M, rays that a cell can store, slots");
-    table.number("buffer", m.buffer_depth, 1, 1024, "depth of every buffer, messages");
-    table.choice("networks", m.networks,
-                 {{"half", Networks::half},
-                  {"quadrant", Networks::quadrant},
-                  {"split", Networks::split},
-                  {"shared", Networks::shared}},
-                 "which messages share a buffer");
-    table.choice("recovery", m.recovery, {{"postpone", Recovery::postpone}, {"none", Recovery::none}},
-                 "a ray that finds no slot: destroyed and sent again, or left waiting");
-    table.choice("slots", m.slots,
-                 {{"reserved", Slots::reserved}, {"free", Slots::free}, {"nested", Slots::nested}},
-                 "slots kept by generation, free for all, or kept for deeper generations alone");
-    table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
-    table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
-    table.number(
-        "stall", m.stall, 0.0, 0.9,
-        "probability that a transfer or an operation takes a cycle more, and again; drawn by --seed");
-    table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62,
-                 "timed engine: stop after so many cycles; 0: never");
+    add_communication_options(table, m);
     table.number("voxel-capacity", p.voxel_capacity, 0, 1000000, "voxels that a cell can hold; 0: unlimited");
     table.number("normal-offset", p.normal_offset, -1.0, 1.0,
                  "start of secondary rays off their polygon, cells; negative: what suits the arithmetic");

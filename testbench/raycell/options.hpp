@@ -47,6 +47,8 @@ class OptionTable {
     /// --NAME X,Y or X0..X1,Y0..Y1, may come several times: cells of the array. Whether they lie inside it is
     /// for the command to check.
     void cells(const std::string& name, std::vector<CellRange>& target, const std::string& help);
+    /// --NAME P or P,Q: two shares from 0 to 1; P alone leaves Q at 0.
+    void shares(const std::string& name, double& p, double& q, const std::string& help);
     /// --cost NAME=CYCLES, may come several times
     void costs(CostTable& table);
 
@@ -76,6 +78,8 @@ struct RenderOptions {
 
 /// The options that render and truth share: scene, view, size, ray tree.
 void add_scene_options(OptionTable& table, RenderOptions& options);
+/// Ray store, buffers, networks, recovery, links, clock, limit of cycles.
+void add_communication_options(OptionTable& table, MachineSettings& machine);
 /// The rest of render's.
 void add_machine_options(OptionTable& table, RenderOptions& options);
 

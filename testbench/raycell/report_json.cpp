@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "model/storage_bits.hpp"
 #include "testbench/raycell/knot_report.hpp"
 
 namespace raycell {
@@ -41,6 +42,9 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                       {"precast", result.precast_cycles},
                       {"trace", result.trace_cycles},
                       {"total", total}};
+    const std::uint64_t pixels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
+    const bool whole = result.verdict == Verdict::completed || result.verdict == Verdict::capacity;
+    json["pixels"] = {{"all", pixels}, {"completed", whole ? pixels : c.pixels_done}};
     json["simulated_seconds"] = double(total) / (machine.clock_mhz * 1e6);
     // The distribution stage has one distributor per row: its utilisation is their mean.
     StageStatistics distributors = result.distribution;
@@ -83,6 +87,11 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                             {"verdict", messages.verdict},
                             {"span", messages.span},
                             {"trapeze", messages.trapeze}};
+    const StorageBits stored_bits = storage_bits(picture, machine, formats, scene.sources.size());
+    json["storage_bits"] = {{"ray_buffers", stored_bits.ray_buffers},
+                            {"answer_buffers", stored_bits.answer_buffers},
+                            {"slot", slot_bits(picture, machine, formats, scene.sources.size()).total()},
+                            {"ray_store", stored_bits.ray_store}};
     json["formats"] = Json::object();
     for (const auto& [name, format] : formats.names()) json["formats"][name] = format;
     json["ray_store"] = {

@@ -9,6 +9,12 @@ namespace {
 const char* const keys[] = {
     "/verdict",
     "/config",
+    "/pixels/all",
+    "/pixels/completed",
+    "/storage_bits/ray_buffers",
+    "/storage_bits/answer_buffers",
+    "/storage_bits/slot",
+    "/storage_bits/ray_store",
     "/cycles/load",
     "/cycles/precast",
     "/cycles/trace",
@@ -117,7 +123,10 @@ void expect_bounds(const Json& report) {
                 double(count(cycles, "total")) / (report.at("config").at("clock-mhz").get<double>() * 1e6),
                 1e-9);
     for (const auto& stage : report.at("stages")) expect_share(stage.at("utilisation"));
+    EXPECT_LE(count(report.at("pixels"), "completed"), count(report.at("pixels"), "all"));
     const Json& store = report.at("ray_store");
+    EXPECT_EQ(count(report.at("storage_bits"), "ray_store"),
+              count(report.at("storage_bits"), "slot") * count(store, "capacity"));
     EXPECT_LE(count(store, "peak"), count(store, "capacity"));
     EXPECT_LE(store.at("mean").get<double>(), store.at("capacity").get<double>());
     for (const auto& peak : report.at("buffers").at("peak")) {
@@ -157,6 +166,9 @@ void expect_sound(const Json& report) {
     const std::int64_t overflowed = count(report.at("voxels"), "overflowed");
     if (verdict == "capacity") {
         EXPECT_GT(overflowed, 0);
+    }
+    if (ended) {
+        EXPECT_EQ(count(report.at("pixels"), "completed"), count(report.at("pixels"), "all"));
     }
     if (verdict == "completed") {
         EXPECT_EQ(overflowed, 0) << "what did not fit is named in the verdict";

@@ -1,0 +1,173 @@
+"""What sweeps share: runs on all cores, each finished one kept, so that a stopped sweep goes on where it was."""
+import concurrent.futures
+import fcntl
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import threading
+import time
+
+RUN_SECONDS = 1800  # a run that takes longer is stuck
+
+
+class Failure(Exception):
+    """A run that gave no result."""
+
+
+class Stopped(Exception):
+    """The sweep was told to stop."""
+
+
+def hash_of(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+class Cache:
+    """Finished runs, a file each, written beside and renamed. `owner` is the sweep's name, for messages."""
+
+    def __init__(self, folder, owner):
+        self.folder = folder
+        self.owner = owner
+        self.work = self.folder / "work"
+        self.lock = None
+
+    def occupy(self):
+        """Lets one sweep at a time work here, and clears away what killed runs left."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.lock = open(self.folder / "lock", "w")
+        try:
+            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            sys.exit(f"{self.owner}: another sweep is at work in {self.folder}; wait for it or stop it")
+        shutil.rmtree(self.work, ignore_errors=True)
+        self.work.mkdir()
+
+    def read(self, name):
+        """The record of this name, or None where there is none that can be read."""
+        try:
+            return json.loads((self.folder / f"{name}.json").read_text())
+        except (OSError, ValueError):
+            return None
+
+    def write(self, name, record):
+        partial = self.work / f"{name}.json"
+        partial.write_text(json.dumps(record, indent=1))
+        os.replace(partial, self.folder / f"{name}.json")
+
+
+class Runner:
+    """Makes runs in parallel; a sweep says what one run is (`make_one`) and which are finished (`finished`)."""
+
+    def __init__(self, cache):
+        self.cache = cache
+        self.stopping = threading.Event()
+        self.guard = threading.Lock()
+        self.children = set()
+
+    def finished(self, runs):
+        """{run: record} of what is in the cache."""
+        raise NotImplementedError
+
+    def make_one(self, run):
+        """Makes a run; stores and returns its record."""
+        raise NotImplementedError
+
+    def prepare(self, pending):
+        """Called with the runs to be made before the first of them."""
+
+    def make(self, runs, jobs, cost):
+        """Makes the runs that are not in the cache, those of the greatest cost (seconds) first; returns all records
+        and {run: what went wrong}."""
+        self.cache.occupy()
+        records, failures = self.finished(runs), {}
+        pending = sorted((run for run in runs if run not in records), key=lambda run: -cost(run))
+        self.prepare(pending)
+        progress = Progress(len(runs), len(records), sum(cost(run) for run in pending))
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            futures = {pool.submit(self.make_one, run): run for run in pending}
+            try:
+                for future in concurrent.futures.as_completed(futures):
+                    run = futures[future]
+                    error = future.exception()
+                    if error is None:
+                        records[run] = future.result()
+                    elif isinstance(error, (Failure, OSError)):
+                        failures[run] = str(error)
+                    else:
+                        raise error
+                    progress.step(cost(run), len(failures))
+            except BaseException:
+                self.stop(pool)
+                raise
+            finally:
+                progress.end()
+        shutil.rmtree(self.cache.work, ignore_errors=True)
+        return records, failures
+
+    def stop(self, pool):
+        self.stopping.set()
+        pool.shutdown(wait=False, cancel_futures=True)
+        with self.guard:
+            for child in self.children:
+                child.kill()
+
+    def execute(self, command, codes=(0,)):
+        """Runs a program to its end and returns its output; another exit code than those is a failure."""
+        if shutil.which("setpriv"):  # a killed sweep takes its runs along
+            command = ["setpriv", "--pdeathsig", "KILL", *command]
+        with self.guard:
+            if self.stopping.is_set():
+                raise Stopped()
+            child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.children.add(child)
+        try:
+            output, errors = child.communicate(timeout=RUN_SECONDS)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.communicate()
+            raise Failure(f"not finished after {RUN_SECONDS} s") from None
+        finally:
+            with self.guard:
+                self.children.discard(child)
+        if self.stopping.is_set():
+            raise Stopped()
+        if child.returncode not in codes:
+            last = errors.strip().splitlines()[-1:] or ["no message"]
+            raise Failure(f"exit code {child.returncode}: {last[0]}")
+        return output
+
+
+class Progress:
+    """Done, all and time left on standard error: rewritten in place on a terminal, now and then elsewhere."""
+
+    def __init__(self, runs, done, pending_cost):
+        self.all, self.done, self.left = runs, done, pending_cost
+        self.all_cost = pending_cost
+        self.start = self.shown = time.monotonic()
+        if done:
+            print(f"{done} of {runs} runs were finished before", file=sys.stderr)
+
+    def step(self, run_cost, failures):
+        self.done += 1
+        self.left -= run_cost
+        now = time.monotonic()
+        terminal = sys.stderr.isatty()
+        if not terminal and now - self.shown < 10 and self.done < self.all:
+            return
+        self.shown = now
+        left = round((now - self.start) * max(self.left, 0) / max(self.all_cost - self.left, 1e-9))
+        failed = f", {failures} failed" if failures else ""
+        print(f"{chr(13) if terminal else ''}{self.done} of {self.all} runs, "
+              f"{left // 60}:{left % 60:02d} min left{failed}   ",
+              end="" if terminal else "\n", file=sys.stderr, flush=True)
+
+    def end(self):
+        if sys.stderr.isatty():
+            print(file=sys.stderr)

@@ -1,0 +1,181 @@
+// deadlock_tb: synthetic ray traffic through the simulated machine, without a scene: does it lock, and where?
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <iomanip>
+#include <iostream>
+#include <new>
+#include <systemc>
+
+#include "model/traffic.hpp"
+#include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/machine_run.hpp"
+#include "testbench/raycell/new_file.hpp"
+#include "testbench/raycell/report_json.hpp"
+#include "testbench/raycell/scene_input.hpp"
+
+namespace {
+
+using namespace raycell;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+/// SystemC prints its banner before sc_main(); standard error belongs to the run's own messages.
+const bool banner_off = [] {
+    setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
+    return true;
+}();
+
+struct Options {
+    RenderOptions run;  ///< array, machine, --output, --quiet
+    TrafficSettings traffic;
+};
+
+void add_options(OptionTable& table, Options& options) {
+    PictureSettings& p = options.run.picture;
+    TrafficSettings& t = options.traffic;
+    table.text("output", options.run.prefix, "PREFIX", "writes PREFIX.json and PREFIX.toml; empty: no files");
+    table.size("cells", p.width, p.height, "size of the array; each cell sends a primary ray");
+    table.number("hit-probability", t.hit_probability, 0.0, 1.0,
+                 "that a ray hits in a cell that it enters; never in the one that it starts from");
+    table.number("generations", p.max_depth, 0, 62,
+                 "of rays after the primary one: so many may have to wait");
+    table.shares("branching", t.reflected, t.refracted,
+                 "probability that a hit has a reflected child, and that it has a refracted one");
+    table.choice("directions", t.directions,
+                 {{"isotropic", Directions::isotropic},
+                  {"axial", Directions::axial},
+                  {"diagonal", Directions::diagonal},
+                  {"back", Directions::back}},
+                 "of rays in the plane of the array; back: isotropic, but see turn-back");
+    table.number("turn-back", t.turn_back, 0.0, 1.0,
+                 "directions back: share of the children that return to the cell that their parent came from "
+                 "and hit there, as between facing mirrors");
+    table.number("sources", t.sources, 0, int(max_sources),
+                 "shadow rays of each hit; with them the last generation has to wait too");
+    add_communication_options(table, options.run.machine);
+    table.number("seed", t.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1,
+                 "of every draw, and of the back-off's jitter");
+    table.costs(options.run.machine.costs);
+    table.flag("quiet", options.run.quiet, "no progress, no summary");
+}
+
+/// Whether what is finished of the picture is the untimed machine's, bit for bit.
+bool equals(const Picture& picture, const Picture& golden) {
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const Pixel& a = picture.pixels[i];
+        const Pixel& b = golden.pixels[i];
+        if (a.cycle == 0) continue;  // not finished
+        if (a.colour != b.colour || a.normal != b.normal || a.depth != b.depth || a.polygon != b.polygon) {
+            return false;
+        }
+    }
+    return true;
+}
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void summarise(const Json& json, std::uint64_t seed) {
+    const Json& pixels = json["pixels"];
+    std::cout << "verdict " << json["verdict"].get<std::string>() << " after " << json["cycles"]["trace"]
+              << " cycles, seed " << seed << "; " << pixels["completed"] << " of " << pixels["all"]
+              << " pixels, the untimed picture " << (json["equals_untimed"] ? "equal" : "DIFFERS") << '\n'
+              << "ray store: peak " << json["ray_store"]["peak"] << " of " << json["ray_store"]["capacity"]
+              << ", mean " << std::setprecision(3) << json["ray_store"]["mean"].get<double>()
+              << "; buffers, peak of " << json["buffers"]["depth"] << ":";
+    for (const auto& [name, peak] : json["buffers"]["peak"].items()) {
+        if (name != "load") std::cout << ' ' << name << ' ' << peak;
+    }
+    std::cout << "\npostponed " << json["deadlock"]["postponed"] << " rays of "
+              << json["messages"]["rays"]["sent"] << " sent\n";
+}
+
+int run(Options& options, const OptionTable& table) {
+    RenderOptions& o = options.run;
+    if (!o.prefix.empty()) check_output(o.prefix);
+    check_memory(o);
+    const PictureSettings picture = traffic_picture(o.picture.width, o.picture.height, o.picture.max_depth);
+    o.machine.seed = options.traffic.seed;
+    const SyntheticTraffic traffic(options.traffic);
+    const CellScene scene = traffic_scene(picture, options.traffic);
+    const auto start = Clock::now();
+    const Picture golden = UntimedMachine(scene, picture, nullptr, &traffic).render();
+    const double wall_untimed = seconds_since(start);
+    const auto built = Clock::now();
+    // Never destroyed: SystemC takes ports down in quadratic time.
+    static Machine* const machine = new Machine("machine", scene, picture, o.machine, nullptr, &traffic);
+    const double wall_build = seconds_since(built);
+    const bool progress = shows_progress(o);
+    const RunResult result =
+        machine->run(progress ? show_progress : std::function<void(const RunProgress&)>());
+    if (progress) end_progress();
+
+    Json json = report(result, scene, picture, o.machine);
+    const bool equal = equals(result.picture, golden);
+    json["equals_untimed"] = equal;
+    json["config"] = table.values();
+    json["model"]["wall_seconds"] = {{"untimed", wall_untimed},
+                                     {"build", wall_build},
+                                     {"load", result.wall_load},
+                                     {"trace", result.wall_trace}};
+    if (!o.prefix.empty()) {
+        OutputSet outputs(o.prefix);
+        outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(json["config"])); });
+        outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
+        outputs.keep();
+    }
+    explain(result, "deadlock_tb");
+    if (!o.quiet) summarise(json, options.traffic.seed);
+    if (!equal) std::cerr << "deadlock_tb: the picture is not that of the untimed machine\n";
+    return equal ? exit_code(result.verdict) : exit_comparison;
+}
+
+/// The command line's arguments behind those of --config, so that the former take precedence.
+std::vector<std::string> with_configuration(const std::vector<std::string>& words, const CLI::App& app) {
+    const std::string path = configuration_named(words);
+    if (path.empty()) return {words.begin() + 1, words.end()};
+    std::vector<std::string> all = arguments_from_file(path, app);
+    all.insert(all.end(), words.begin() + 1, words.end());
+    return all;
+}
+
+int run(int argc, char** argv) {
+    Options options;
+    options.run.prefix.clear();
+    options.run.picture.width = options.run.picture.height = 32;
+    options.run.picture.max_depth = 3;
+    CLI::App app{"Synthetic ray traffic through the cell array, without a scene: does it lock?"};
+    app.name("deadlock_tb");
+    OptionTable table(app);
+    app.add_option("--config", "options from a file as a run writes it; the command line has precedence")
+        ->type_name("FILE");
+    add_options(table, options);
+    std::vector<std::string> words = with_configuration({argv, argv + argc}, app);
+    std::reverse(words.begin(), words.end());  // CLI11 takes a vector from its end
+    try {
+        app.parse(words);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? exit_done : exit_usage;
+    }
+    const int code = run(options, table);
+    std::cout.flush();
+    if (!std::cout) throw std::runtime_error("standard output can't be written");
+    return code;
+}
+
+}  // namespace
+
+int sc_main(int argc, char** argv) {
+    (void)banner_off;
+    try {
+        return run(argc, argv);
+    } catch (const std::bad_alloc&) {
+        std::cerr << "deadlock_tb: out of memory; expected a smaller array\n";
+    } catch (const std::exception& error) {
+        std::cerr << "deadlock_tb: " << error.what() << '\n';
+    }
+    return raycell::exit_usage;
+}
