@@ -37,6 +37,8 @@ class Cell {
     int x() const { return x_; }
     int y() const { return y_; }
     std::uint64_t schedule_hash() const { return hash_; }
+    /// What the cell has done so far; what is still going on counts up to `now`.
+    CellStatistics statistics(Cycle now) const;
     /// True while anything in the cell is unfinished: a unit at work, a slot in use, an own ray not answered.
     bool busy() const;
     /// What stands in the cell, a line each: for reports of runs that stopped.
@@ -68,7 +70,7 @@ class Cell {
     void finish_traversal(Cycle now);
     void start_traversal(Cycle now);
     void move_answers(Cycle now);
-    void move_answer(LinkIn& in, Cycle now);
+    void move_answer(LinkIn& in, Wait& wait, Cycle now);
     void move_replies(Cycle now);
     void move_rays(Cycle now);
     // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
@@ -100,7 +102,21 @@ class Cell {
     void begin_direct(RayPacket& packet, Cycle now);
     void release_slot(std::uint32_t index, Cycle now);
     Cycle backoff(std::uint64_t id, unsigned attempt) const;
-    RayPacket* launch(const Ray& ray);
+    RayPacket* launch(const Ray& ray, const Ray* parent);
+
+    // cell_statistics.cpp: what waits, and for what
+    Wait wait_of(const RayPacket& packet, std::size_t place) const;
+    /// An attempt to move failed because of `cause`.
+    void stall(Wait& wait, Stall cause, std::uint64_t ray, Cycle now) {
+        if (wait.cause == cause) return;
+        settle(wait, ray, now);
+        wait = {now, cause};
+    }
+    /// What waited goes on.
+    void settle(const Wait& wait, std::uint64_t ray, Cycle now) {
+        if (wait.cause != Stall::none && now > wait.since) add_stall(wait, ray, now);
+    }
+    void add_stall(const Wait& wait, std::uint64_t ray, Cycle now);
 
     bool local(const Answer& a) const { return a.home_x == x_ && a.home_y == y_; }
     void want(Cycle cycle) { next_ = std::min(next_, cycle); }
@@ -142,6 +158,10 @@ class Cell {
     std::uint64_t precast_next_ = 0;    ///< voxel · sources + source
     std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
     std::uint64_t hash_ = 0;
+    CellStatistics statistics_;
+    Stall cause_ = Stall::none;                    ///< why the last attempt to move something failed
+    std::array<Wait, side_count> answer_waits_{};  ///< of the oldest answer at each side
+    Wait direct_wait_;                             ///< of the answer that stands in the shading unit
     Cycle next_ = never;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cells/pool.hpp"
+#include "cells/stall.hpp"
 #include "model/message.hpp"
 #include "model/span.hpp"
 #include "model/tracing.hpp"
@@ -15,6 +16,7 @@ struct RayPacket {
     Visit visit;
     Stage stage = Stage::untested;
     std::uint64_t decided = 0;  ///< cycle in which the test was over
+    Wait wait;
 };
 
 /// A load message: polygons from geometry, trapezes from precomputation and down the column of distributors,

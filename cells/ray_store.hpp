@@ -26,6 +26,7 @@ struct Slot {
     RayPacket* child = nullptr;  ///< on its way out of the cell, one at a time
     dvec3 result{0, 0, 0};
     Cycle since = 0;  ///< when the ray was accepted
+    Wait wait;        ///< for the shading unit or, with its answer, for a way out
 };
 
 /// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest

@@ -91,6 +91,16 @@ BufferClasses buffer_classes(Networks networks) {
     return classes;
 }
 
+const char* class_name(Networks networks, int index) {
+    static const char* const quadrants[] = {"ray_east_south", "ray_west_south", "ray_east_north",
+                                            "ray_west_north", "answer"};
+    static const char* const halves[] = {"ray_east", "ray_west", "answer"};
+    static const char* const split[] = {"ray", "answer"};
+    if (networks == Networks::quadrant) return quadrants[index];
+    if (networks == Networks::half) return halves[index];
+    return networks == Networks::split ? split[index] : "all";
+}
+
 int BufferClasses::ray(const Ray& r) const {
     const int west = r.direction.x < 0 ? 1 : 0;
     const int north = r.direction.y < 0 ? 1 : 0;

@@ -55,5 +55,7 @@ struct BufferClasses {
     Networks networks = Networks::split;
 };
 BufferClasses buffer_classes(Networks networks);
+/// Name of a buffer class as statistics and reports print it: "ray_east", "answer".
+const char* class_name(Networks networks, int index);
 
 }  // namespace raycell

@@ -98,6 +98,7 @@ Cycle Machine::livelock_window() const {
 bool Machine::watch(void* self, Cycle now) {
     auto& machine = *static_cast<Machine*>(self);
     Environment& env = machine.environment_;
+    machine.activity_.observe(now, env.counters);
     if (env.phase == Phase::trace && env.counters.rays_destroyed > 0 &&
         now - std::max(env.counters.last_progress, env.phase_start) > machine.livelock_window()) {
         // Nothing comes home any more. With no new rays on their way, all that is not locked comes to rest.
@@ -238,7 +239,11 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     progress_ = std::move(progress);
     RunResult result;
     const PictureSettings& settings = environment_.context.settings;
+    activity_.begin(scheduler_.now(), environment_.counters);
     run_phase(Phase::load, result);
+    activity_.finish(scheduler_.now() + 1, environment_.counters);
+    result.load_activity = activity_.activity();
+    activity_.begin(scheduler_.now() + 1, environment_.counters);
     // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
     result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
     for (const auto& link : array_.links()) link->reset_statistics();
@@ -255,7 +260,10 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
         }
     } else {
         if (going() && settings.shadows == Shadows::precast) run_phase(Phase::precast, result);
+        result.trace_start = scheduler_.now() + 1;
         if (going()) run_phase(Phase::trace, result);
+        activity_.finish(scheduler_.now() + 1, environment_.counters);
+        result.activity = activity_.activity();
     }
     if (going()) check_conservation();
     collect(result);
@@ -321,19 +329,9 @@ RunResult::BufferUse Machine::buffer_use(const char* class_name, int index, Cycl
 
 void Machine::collect_buffers(RunResult& result) const {
     if (environment_.phase == Phase::load) return;
-    static const char* const quadrants[] = {"ray_east_south", "ray_west_south", "ray_east_north",
-                                            "ray_west_north", "answer"};
-    static const char* const halves[] = {"ray_east", "ray_west", "answer"};
-    static const char* const split[] = {"ray", "answer"};
-    static const char* const shared[] = {"all"};
-    const Networks networks = environment_.machine.networks;
-    const char* const* names = networks == Networks::quadrant ? quadrants
-                               : networks == Networks::half   ? halves
-                               : networks == Networks::split  ? split
-                                                              : shared;
     for (int index = 0; index < environment_.classes.count; ++index) {
-        result.buffers.push_back(
-            buffer_use(names[index], index, result.precast_cycles + result.trace_cycles));
+        result.buffers.push_back(buffer_use(class_name(environment_.machine.networks, index), index,
+                                            result.precast_cycles + result.trace_cycles));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cells/array.hpp"
+#include "pipeline/activity.hpp"
 #include "pipeline/distribution.hpp"
 #include "pipeline/exterior.hpp"
 #include "pipeline/geometry.hpp"
@@ -41,6 +42,9 @@ struct RunResult {
     std::vector<std::string> report;              ///< what was stuck where, oldest first
     std::vector<std::pair<int, int>> knot_cells;  ///< (x, y) of the cells of the deadlock's knot
     Cycle knot_formed = never;                    ///< cycle from which on the knot stood
+    Activity load_activity;
+    Activity activity;      ///< of precast and trace
+    Cycle trace_start = 0;  ///< cycle in which tracing began; before it, from activity.start on, precast
     std::uint64_t schedule_hash = 0;
     double wall_load = 0;  ///< seconds
     double wall_precast = 0;
@@ -98,6 +102,7 @@ class Machine : public sc_core::sc_module {
     std::vector<std::unique_ptr<Link>> row_links_;
     std::function<void(const RunProgress&)> progress_;
     std::uint64_t watch_calls_ = 0;
+    ActivityRecorder activity_;
     Cycle drain_start_ = never;
 };
 
