@@ -47,6 +47,8 @@ class OptionTable {
     /// --NAME X,Y or X0..X1,Y0..Y1, may come several times: cells of the array. Whether they lie inside it is
     /// for the command to check.
     void cells(const std::string& name, std::vector<CellRange>& target, const std::string& help);
+    /// --NAME PIXEL/PART, may come several times: rays by their ids.
+    void rays(const std::string& name, std::vector<std::uint64_t>& target, const std::string& help);
     /// --cost NAME=CYCLES, may come several times
     void costs(CostTable& table);
 
@@ -72,10 +74,14 @@ struct RenderOptions {
     bool quiet = false;
     bool truth = false;
     bool clip_truth = false;
+    std::vector<std::uint64_t> watch_rays;
+    std::vector<CellRange> watch_pixels;
 };
 
 /// The options that render and truth share: scene, view, size, ray tree.
 void add_scene_options(OptionTable& table, RenderOptions& options);
+/// render's own, for watching rays.
+void add_watch_options(OptionTable& table, RenderOptions& options);
 /// The rest of render's.
 void add_machine_options(OptionTable& table, RenderOptions& options);
 
