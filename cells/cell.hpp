@@ -105,7 +105,12 @@ class Cell {
     RayPacket* launch(const Ray& ray, const Ray* parent);
 
     // cell_statistics.cpp: what waits, and for what
-    Wait wait_of(const RayPacket& packet, std::size_t place) const;
+    Wait wait_of(const RayPacket& packet, std::size_t place) const {
+        // Nobody notes down that a ray has come to the head of its buffer: the link knows.
+        const bool arrived = packet.stage == RayPacket::Stage::untested && packet.wait.cause == Stall::none;
+        if (!arrived || place >= ray_inputs_.size()) return packet.wait;
+        return {ray_inputs_[place].link->head_since(ray_inputs_[place].index), Stall::traversal};
+    }
     /// An attempt to move failed because of `cause`.
     void stall(Wait& wait, Stall cause, std::uint64_t ray, Cycle now) {
         if (wait.cause == cause) return;

@@ -3,13 +3,6 @@
 
 namespace raycell {
 
-Wait Cell::wait_of(const RayPacket& packet, std::size_t place) const {
-    // Nobody notes down that a ray has come to the head of its buffer: the link knows.
-    const bool arrived = packet.stage == RayPacket::Stage::untested && packet.wait.cause == Stall::none;
-    if (!arrived || place >= ray_inputs_.size()) return packet.wait;
-    return {ray_inputs_[place].link->head_since(ray_inputs_[place].index), Stall::traversal};
-}
-
 void Cell::add_stall(const Wait& wait, std::uint64_t ray, Cycle now) {
     const Cycle cycles = now - wait.since;
     statistics_.stalls[std::size_t(wait.cause)] += cycles;
