@@ -76,7 +76,7 @@ td.word { white-space: nowrap; }
 @media print { :root { --paper: #fff; --card: #f4f4f2; --ink: #000; --soft: #444; --line: #ccc; --accent: #1f5f9f;
   --area: #1f5f9f26; --good: #175f31; --bad: #9c1f18; } body { font-size: 10.5pt; max-width: none; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } figure, tr, dl div { break-inside: avoid; }
-  h2 { break-after: avoid; } .maps { grid-template-columns: repeat(4, 1fr); }
+  h2 { break-after: avoid; } .maps { grid-template-columns: repeat(4, 1fr); } .ticks { font-size: .65rem; }
   .charts { grid-template-columns: repeat(2, 1fr); } }
 """.replace("BAR", report_maps.bar_style())
 

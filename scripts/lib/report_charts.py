@@ -165,21 +165,29 @@ def view(cells, edges, frame, size, rem):
             f'{"".join(parts)}</svg>')
 
 
+def around(cells, size):
+    """A square that holds the cells and something of their neighbourhood, inside the array where it fits."""
+    lows = [min(c[i] for c in cells) for i in (0, 1)]
+    highs = [max(c[i] for c in cells) + 1 for i in (0, 1)]
+    side = max(h - l for l, h in zip(lows, highs)) + 4
+    starts = [max(-1, min((l + h - side) // 2, n + 1 - side)) for l, h, n in zip(lows, highs, size)]
+    return (starts[0], starts[1], starts[0] + side, starts[1] + side)
+
+
 def array_picture(deadlock, width, height):
     """The array with the cells that are stuck and what waits for what among them; a small knot once more, larger."""
     cells, edges, what = knot_of(deadlock)
     if not cells:
         return ""
     size = (width, height)
-    pictures = [view(cells, edges, (-1, -1, width + 1, height + 1), size, 22)]
-    near = (min(x for x, _ in cells) - 2, min(y for _, y in cells) - 2,
-            max(x for x, _ in cells) + 3, max(y for _, y in cells) + 3)
-    zoomed = max(near[2] - near[0], near[3] - near[1]) * 2 < max(width, height)
+    pictures = [view(cells, edges, (-1, -1, width + 1, height + 1), size, 20)]
+    near = around(cells, size)
+    zoomed = (near[2] - near[0]) * 2 <= max(width, height)
     if zoomed:
-        pictures.append(view(cells, edges, near, size, 22))
+        pictures.append(view(cells, edges, near, size, 20))
     waits = f", {len(edges)} waits between them" if edges else ""
     formed = (deadlock.get("knot") or {}).get("formed")
     since = f"; it stands since cycle {formed}" if isinstance(formed, (int, float)) else ""
-    part = f"; beside it, x from {near[0]} to {near[2] - 1}, y from {near[1]} to {near[3] - 1}" if zoomed else ""
+    part = f"; the larger picture: x from {near[0]} to {near[2] - 1}, y from {near[1]} to {near[3] - 1}" if zoomed else ""
     return (f'<figure class="knot"><div>{"".join(pictures)}</div><figcaption>{html.escape(what)}: {len(cells)} of '
             f'{width * height} cells{waits}{since}{part}.</figcaption></figure>')
