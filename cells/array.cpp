@@ -23,6 +23,7 @@ Array::Array(sc_core::sc_module_name name, Environment& environment)
                 CellModule& sink = cell(to_x, to_y);
                 Link& link = make_link(source, sink, side);
                 sinks_.push_back(index(to_x, to_y));
+                sides_.push_back(side);
                 source.out[std::size_t(side)].bind(link);
                 sink.in[std::size_t(opposite(side))].bind(link);
             }

@@ -19,6 +19,8 @@ class Array : public sc_core::sc_module {
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
     /// Row-major index of the cell that links()[link] leads to: where its buffers stand.
     std::size_t sink_of(std::size_t link) const { return sinks_[link]; }
+    /// The side of its source over which links()[link] leads.
+    Side side_of(std::size_t link) const { return sides_[link]; }
 
     /// Joins a cell to something outside over the border; to be called before the simulation starts.
     void join_border(int x, int y, Side side, LinkIn* from_outside, LinkOut* to_outside);
@@ -39,6 +41,7 @@ class Array : public sc_core::sc_module {
     std::vector<std::unique_ptr<CellModule>> cells_;
     std::vector<std::unique_ptr<Link>> links_;
     std::vector<std::size_t> sinks_;  ///< by link
+    std::vector<Side> sides_;         ///< by link
 };
 
 }  // namespace raycell

@@ -98,7 +98,9 @@ void Cell::remove_from(std::size_t place) {
     if (place == ray_inputs_.size()) {
         own_ = nullptr;
     } else {
-        ray_store_[std::uint32_t(place - ray_inputs_.size() - 1)].child = nullptr;
+        Slot& slot = ray_store_[std::uint32_t(place - ray_inputs_.size() - 1)];
+        slot.child = nullptr;
+        slot.wait = {env_.scheduler.now(), Stall::shading};
     }
     want(env_.scheduler.now() + 1);  // the next child or own ray may follow
 }
@@ -128,12 +130,15 @@ void Cell::start_traversal(Cycle now) {
         if (nothing_at(place)) continue;
         RayPacket* packet = packet_at(place);
         if (!packet || packet->stage != RayPacket::Stage::untested) continue;
+        settle(wait_of(*packet, place), packet->ray.id, now);
+        packet->wait.cause = Stall::none;
         packet->visit = visit_cell(store_, packet->ray, env_.context);
         packet->stage = RayPacket::Stage::in_test;
         const std::uint32_t cycles =
             unit_cycles(packet->ray.outside ? env_.costs().walk_step
                                             : visit_cycles(packet->visit, env_.settings, env_.costs()));
         env_.counters.traversal_cycles += cycles;
+        statistics_.traversal_cycles += cycles;
         traversal_ = {packet, now + cycles};
         next_test_ = place + 1;
         record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
@@ -155,6 +160,7 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
     if (local(answer)) {
         if (store_port_ == now) {
             want(now + 1);
+            cause_ = Stall::store_port;
             return false;
         }
         ++env_.counters.answers_sent;
@@ -163,10 +169,14 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
         return true;
     }
     LinkOut* out = out_[std::size_t(route(answer))];
-    if (!out->can_send(env_.classes.answer, next_)) return false;
+    if (!out->can_send(env_.classes.answer, next_)) {
+        cause_ = out->has_room(env_.classes.answer) ? Stall::answer_busy : Stall::answer_full;
+        return false;
+    }
     ++env_.counters.answers_sent;
     tell(now, CellEvent::answer, answer.id, std::uint32_t(answer.kind));
     ++env_.counters.rays.return_hops;
+    ++statistics_.return_hops;
     if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer.id >> 32)].hops;
     Answer* copy = env_.pools.answers.take();
     *copy = answer;
@@ -194,10 +204,13 @@ void Cell::move_answers(Cycle now) {
         }
         order[std::size_t(place)] = side;
     }
-    for (int i = 0; i < count; ++i) move_answer(*in_[std::size_t(order[std::size_t(i)])], now);
+    for (int i = 0; i < count; ++i) {
+        const auto side = std::size_t(order[std::size_t(i)]);
+        move_answer(*in_[side], answer_waits_[side], now);
+    }
 }
 
-void Cell::move_answer(LinkIn& in, Cycle now) {
+void Cell::move_answer(LinkIn& in, Wait& wait, Cycle now) {
     const int index = env_.classes.answer;
     const Message message = in.front(index);
     const Cycle ready = in.arrival(index) + env_.costs().route_return;
@@ -206,9 +219,11 @@ void Cell::move_answer(LinkIn& in, Cycle now) {
         return;
     }
     Answer* answer = message.answer;
+    const std::uint64_t id = answer->id;
     if (local(*answer)) {
         if (store_port_ == now) {
             want(now + 1);
+            stall(wait, Stall::store_port, id, now);
             return;
         }
         deliver(*answer, now);
@@ -218,14 +233,18 @@ void Cell::move_answer(LinkIn& in, Cycle now) {
         LinkOut* out = out_[std::size_t(way)];
         if (!out->can_send(index, next_)) {
             blocked_ = true;
+            stall(wait, out->has_room(index) ? Stall::answer_busy : Stall::answer_full, id, now);
             return;
         }
         ++env_.counters.rays.return_hops;
+        ++statistics_.return_hops;
         if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
         const bool intensity = answer->kind == Answer::Kind::intensity;
         out->send(index, message, env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
         record_send(now, way, index, answer->id);
     }
+    settle(wait, id, now);
+    wait.cause = Stall::none;
     in.pop(index);
     if (in.occupancy(index) > 0) want(now + 1);
 }
@@ -246,7 +265,21 @@ void Cell::move_rays(Cycle now) {
         return a.since != b.since ? a.since < b.since : a.place < b.place;
     });
     for (const WaitingRay& ray : waiting) {
-        if (!move_ray(*ray.packet, ray.place, now)) blocked_ = true;
+        try_ray(*ray.packet, ray.place, now);
+    }
+}
+
+/// Moves a ray if it can; what it waited for is told apart by cause.
+void Cell::try_ray(RayPacket& packet, std::size_t place, Cycle now) {
+    const std::uint64_t id = packet.ray.id;
+    Wait wait = packet.wait;
+    packet.wait.cause = Stall::none;  // once it has moved it belongs to others
+    if (move_ray(packet, place, now)) {
+        settle(wait, id, now);
+    } else {
+        blocked_ = true;
+        stall(wait, cause_, id, now);
+        packet.wait = wait;
     }
 }
 
@@ -270,6 +303,7 @@ bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
             }
             start_outside(packet.ray, packet.visit.t_leave, env_.context.arithmetic);
             packet.stage = RayPacket::Stage::untested;
+            packet.wait = {now, Stall::traversal};
             return true;
     }
     return false;
@@ -292,16 +326,21 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     }
     LinkOut* out = out_[std::size_t(side)];
     const int index = env_.classes.ray(ray);
-    if (!out->can_send(index, next_)) return false;
+    if (!out->can_send(index, next_)) {
+        cause_ = out->has_room(index) ? Stall::output_busy : Stall::output_full;
+        return false;
+    }
     remove_from(place);
     const int bits = is_shadow(ray.kind) ? env_.bits.shadow_ray : env_.bits.ray;
     if (leaves) {
         ++env_.counters.rays.exterior;
         ++env_.counters.rays.return_hops;  // the border link, counted with its way back
+        ++statistics_.return_hops;
     } else {
         cross(ray, packet.visit.crossing, env_.context.arithmetic);
         packet.stage = RayPacket::Stage::untested;
         ++env_.counters.rays.ray_hops;
+        ++statistics_.ray_hops;
     }
     if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(ray.id >> 32)].hops;
     ++packet.hops;
@@ -313,6 +352,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
 bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now) {
     if (packet.ray.kind == RayKind::precast && kind == Answer::Kind::lit) {
         ++env_.counters.rays_silent;  // no news is good news
+        tell(now, CellEvent::silent, packet.ray.id, 0);
         env_.counters.last_progress = now;
     } else {
         Answer answer = answer_to(packet.ray, kind);
@@ -322,6 +362,7 @@ bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, cons
             ++env_.counters.rays_destroyed;
             env_.ledger.add(packet, x_, y_, now);
             if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(packet.ray.id >> 32)].postponed;
+            ++statistics_.postponed;
             record(now, CellEvent::postpone, std::uint32_t(packet.ray.id), packet.ray.id, 0);
         } else {
             ++env_.counters.rays_answered;
@@ -335,18 +376,25 @@ bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, cons
 bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     const std::uint32_t object = store_.voxels[packet.visit.hit.voxel].object;
     if (!may_wait(env_.context, packet.ray, object)) {
-        if (shading_.job != Shading::Job::idle || slot_complete()) return false;
+        if (shading_.job != Shading::Job::idle || slot_complete()) {
+            cause_ = Stall::shading;
+            return false;
+        }
         remove_from(place);
         begin_direct(packet, now);
         return true;
     }
     if (store_port_ == now) {
         want(now + 1);
+        cause_ = Stall::store_port;
         return false;
     }
     const auto index = ray_store_.allocate(packet.ray.generation);
     if (!index) {
-        if (env_.machine.recovery == Recovery::none) return false;
+        if (env_.machine.recovery == Recovery::none) {
+            cause_ = Stall::no_slot;
+            return false;
+        }
         return end_ray(packet, place, Answer::Kind::postponed, dvec3(0), now);
     }
     // Before the slot is filled: a child that hits its own cell comes from a slot of this same store.
@@ -356,6 +404,8 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     slot.state = Slot::State::to_set_up;
     slot.packet = &packet;
     slot.since = slot.changed = now;
+    slot.wait = {now, Stall::shading};
+    ++env_.counters.slots_used;
     record(now, CellEvent::accept, std::uint32_t(packet.ray.id), packet.ray.id, *index);
     return true;
 }

@@ -39,6 +39,8 @@ class Cell {
     int x() const { return x_; }
     int y() const { return y_; }
     std::uint64_t schedule_hash() const { return hash_; }
+    /// What the cell has done so far; what is still going on counts up to `now`.
+    CellStatistics statistics(Cycle now) const;
     /// True while anything in the cell is unfinished: a unit at work, a slot in use, an own ray not answered.
     bool busy() const;
     /// What stands in the cell, a line each: for reports of runs that stopped.
@@ -74,7 +76,7 @@ class Cell {
     void finish_traversal(Cycle now);
     void start_traversal(Cycle now);
     void move_answers(Cycle now);
-    void move_answer(LinkIn& in, Cycle now);
+    void move_answer(LinkIn& in, Wait& wait, Cycle now);
     void move_replies(Cycle now);
     void move_rays(Cycle now);
     // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
@@ -85,6 +87,7 @@ class Cell {
         return place < ray_inputs_.size() && !(pending_ >> place & 1);
     }
     void remove_from(std::size_t place);
+    void try_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool move_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool forward(RayPacket& packet, std::size_t place, Cycle now);
     bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
@@ -108,7 +111,26 @@ class Cell {
     void begin_direct(RayPacket& packet, Cycle now);
     void release_slot(std::uint32_t index, Cycle now);
     Cycle backoff(std::uint64_t id, unsigned attempt) const;
-    RayPacket* launch(const Ray& ray);
+    RayPacket* launch(const Ray& ray, const Ray* parent);
+
+    // cell_statistics.cpp: what waits, and for what
+    Wait wait_of(const RayPacket& packet, std::size_t place) const {
+        // Nobody notes down that a ray has come to the head of its buffer: the link knows.
+        const bool arrived = packet.stage == RayPacket::Stage::untested && packet.wait.cause == Stall::none;
+        if (!arrived || place >= ray_inputs_.size()) return packet.wait;
+        return {ray_inputs_[place].link->head_since(ray_inputs_[place].index), Stall::traversal};
+    }
+    /// An attempt to move failed because of `cause`.
+    void stall(Wait& wait, Stall cause, std::uint64_t ray, Cycle now) {
+        if (wait.cause == cause) return;
+        settle(wait, ray, now);
+        wait = {now, cause};
+    }
+    /// What waited goes on.
+    void settle(const Wait& wait, std::uint64_t ray, Cycle now) {
+        if (wait.cause != Stall::none && now > wait.since) add_stall(wait, ray, now);
+    }
+    void add_stall(const Wait& wait, std::uint64_t ray, Cycle now);
 
     // cell_waits.cpp: the wait-for graph
     std::string buffer_name(Side from, int index) const;
@@ -167,6 +189,10 @@ class Cell {
     std::uint64_t precast_next_ = 0;     ///< voxel · sources + source
     std::vector<std::uint64_t> asked_;   ///< memo: per voxel, sources already asked for
     std::uint64_t hash_ = 0;
+    CellStatistics statistics_;
+    Stall cause_ = Stall::none;                    ///< why the last attempt to move something failed
+    std::array<Wait, side_count> answer_waits_{};  ///< of the oldest answer at each side
+    Wait direct_wait_;                             ///< of the answer that stands in the shading unit
     Cycle next_ = never;
     std::uint64_t operations_ = 0;  ///< of the units, for their random stalls
     bool moved_ = false;            ///< this cycle: something went on, or came home

@@ -30,6 +30,7 @@ void Cell::step_load(Cycle now) {
         env_.pools.loads.give_back(&item);
     } else {
         ++env_.counters.load_hops;
+        ++statistics_.load_hops;
         east->send(0, Message(&item), env_.cycles_for(env_.load_bits(item)));
     }
     if (load_in_->front(0).kind != Message::Kind::none) want(now + 1);

@@ -38,12 +38,12 @@ void Cell::move_overdue(Cycle now) {
         if (kind == answer) {
             LinkIn& in = *in_[at];
             const int held = in.occupancy(index);
-            move_answer(in, now);
+            move_answer(in, answer_waits_[at], now);
             if (in.occupancy(index) < held) answers_moved_ |= 1U << at;
         } else if (kind == reply) {
             move_replies(now);  // all of them: there are finitely many
         } else {
-            move_ray(*packet_at(at), at, now);
+            try_ray(*packet_at(at), at, now);
         }
     }
 }

@@ -23,11 +23,13 @@ Cycle Cell::backoff(std::uint64_t id, unsigned attempt) const {
     return base + jitter(env_.machine.seed, id, attempt) % base;
 }
 
-RayPacket* Cell::launch(const Ray& ray) {
+RayPacket* Cell::launch(const Ray& ray, const Ray* parent) {
     RayPacket* packet = env_.pools.rays.take();
     packet->ray = ray;
     packet->launched = env_.scheduler.now();
+    packet->wait = {env_.scheduler.now(), Stall::traversal};
     ++env_.counters.rays_sent;
+    if (env_.observer) env_.observer->launched(*this, env_.scheduler.now(), ray, parent);
     tell(env_.scheduler.now(), CellEvent::launch, ray.id, std::uint32_t(ray.kind));
     return packet;
 }
@@ -63,6 +65,11 @@ void Cell::deliver(const Answer& answer, Cycle now) {
         case RayKind::memo:
             if (answer.kind == Answer::Kind::blocked) store_.lit[answer.slot] &= ~bit;
             store_.known[answer.slot] |= bit;
+            for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {  // others may have waited for it too
+                Slot& slot = ray_store_[i];
+                if (slot.state == Slot::State::waiting && slot.packet->visit.hit.voxel == answer.slot)
+                    slot.wait = {now, Stall::shading};
+            }
             return;
         case RayKind::reflected:
         case RayKind::refracted:
@@ -74,6 +81,7 @@ void Cell::deliver(const Answer& answer, Cycle now) {
 
 void Cell::deliver_to_slot(const Answer& answer, Cycle now) {
     Slot& slot = ray_store_[answer.slot];
+    slot.wait = {now, Stall::shading};  // counts if it was the last answer missing
     if (answer.ray_kind == RayKind::shadow) {
         const std::uint64_t bit = std::uint64_t(1) << answer.child;
         slot.awaited &= ~bit;
@@ -101,7 +109,8 @@ void Cell::feed_own(Cycle now) {
         if (precast_next_ >= store_.voxels.size() * sources) return;
         const std::uint32_t voxel = std::uint32_t(precast_next_ / sources);
         own_ = launch(voxel_shadow_ray(env_.context, store_, voxel, std::size_t(precast_next_ % sources),
-                                       RayKind::precast, x_, y_));
+                                       RayKind::precast, x_, y_),
+                      nullptr);
         ++precast_next_;
         ++env_.counters.rays.precast;
         return;
@@ -115,7 +124,7 @@ void Cell::feed_own(Cycle now) {
         ++env_.counters.rays.primary;
         record_background(env_.picture.at(x_, y_));
     }
-    own_ = launch(primary_ray(env_.context, x_, y_));
+    own_ = launch(primary_ray(env_.context, x_, y_), nullptr);
     root_to_send_ = false;
     root_waits_ = true;
 }
@@ -136,18 +145,20 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
         const std::uint64_t bit = std::uint64_t(1) << source;
         slot.to_ask &= ~bit;
         if (env_.context.settings.shadows == Shadows::memo) {
-            if (asked_[hit.voxel] & bit)
-                return next_child(slot, index, now);  // another hit has asked already
+            if (asked_[hit.voxel] & bit) {  // another hit has asked already
+                slot.wait = {now, Stall::shading};
+                return next_child(slot, index, now);
+            }
             asked_[hit.voxel] |= bit;
             ++env_.counters.rays.shadow;
             Ray ray = voxel_shadow_ray(env_.context, store_, hit.voxel, source, RayKind::memo, x_, y_);
             ray.id = (parent.id >> 32 << 32) | (ray.id & 0xffffffffU);  // its hops belong to this pixel
-            return launch(ray);
+            return launch(ray, &parent);
         }
         ++env_.counters.rays.shadow;
         Ray ray = shadow_ray(env_.context, store_, parent, hit, slot.setup, source, x_, y_);
         ray.slot = index;
-        return launch(ray);
+        return launch(ray, &parent);
     }
     for (std::size_t child = 0; child < 2; ++child) {
         if (!slot.send_child[child]) continue;
@@ -161,7 +172,7 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
         Ray ray = child == 0 ? reflected_ray(env_.context, store_, parent, hit, slot.setup, x_, y_)
                              : refracted_ray(env_.context, store_, parent, hit, slot.setup, x_, y_);
         ray.slot = index;
-        return launch(ray);
+        return launch(ray, &parent);
     }
     return nullptr;
 }
@@ -211,10 +222,13 @@ void Cell::begin_shade(std::uint32_t index, Cycle now) {
     slot.result = shade_hit(env_.context, slot.setup, store_.voxels[hit.voxel].object, slot.lit,
                             slot.colour[0], slot.colour[1]);
     slot.state = Slot::State::in_shading;
+    settle(slot.wait, slot.packet->ray.id, now);
+    slot.wait.cause = Stall::none;
     const std::uint32_t cycles =
         unit_cycles(shade_cycles(env_.context, slot.lit & slot.setup.facing, env_.costs()));
     shading_ = {Shading::Job::shade, index, now + cycles, nullptr, dvec3(0)};
     env_.counters.shading_cycles += cycles;
+    statistics_.shading_cycles += cycles;
     want(shading_.done);
 }
 
@@ -227,9 +241,12 @@ void Cell::begin_set_up(std::uint32_t index, Cycle now) {
                          store_.voxels[packet.visit.hit.voxel].polygon);
     }
     slot.state = Slot::State::in_setup;
+    settle(slot.wait, packet.ray.id, now);
+    slot.wait.cause = Stall::none;
     const std::uint32_t cycles = unit_cycles(setup_cycles(env_.context, slot.setup, env_.costs()));
     shading_ = {Shading::Job::set_up, index, now + cycles, nullptr, dvec3(0)};
     env_.counters.shading_cycles += cycles;
+    statistics_.shading_cycles += cycles;
     want(shading_.done);
 }
 
@@ -247,6 +264,7 @@ void Cell::begin_direct(RayPacket& packet, Cycle now) {
     shading_ = {Shading::Job::direct, 0, now + cycles, &packet,
                 shade_hit(env_.context, setup, voxel.object, lit, dvec3(0), dvec3(0))};
     env_.counters.shading_cycles += cycles;
+    statistics_.shading_cycles += cycles;
     want(shading_.done);
 }
 
@@ -268,6 +286,7 @@ void Cell::finish_shading(Cycle now) {
         slot.send_child[0] = slot.await_child[0] = slot.setup.reflects;
         slot.send_child[1] = slot.await_child[1] = slot.setup.refracts;
         slot.state = Slot::State::waiting;
+        slot.wait = {now, Stall::shading};
     } else {
         slot.state = Slot::State::to_answer;
     }
@@ -283,10 +302,13 @@ void Cell::move_replies(Cycle now) {
         answer.colour = shading_.result;
         RayPacket* packet = shading_.packet;
         if (send_answer(answer, now)) {
+            settle(direct_wait_, answer.id, now);
+            direct_wait_.cause = Stall::none;
             ++env_.counters.rays_answered;
             env_.pools.rays.give_back(packet);
             shading_.job = Shading::Job::idle;
         } else {
+            stall(direct_wait_, cause_, answer.id, now);
             waits = true;
         }
     }
@@ -295,10 +317,13 @@ void Cell::move_replies(Cycle now) {
         if (slot.state != Slot::State::to_answer) continue;
         Answer answer = answer_to(slot.packet->ray, Answer::Kind::intensity);
         answer.colour = slot.result;
+        const Wait wait = slot.wait;  // a local answer may be for a slot of this same store
         if (!send_answer(answer, now)) {
+            stall(slot.wait, cause_, answer.id, now);
             waits = true;
             continue;
         }
+        settle(wait, answer.id, now);
         ++env_.counters.rays_answered;
         release_slot(i, now);
     }
@@ -309,6 +334,8 @@ void Cell::move_replies(Cycle now) {
 void Cell::release_slot(std::uint32_t index, Cycle now) {
     Slot& slot = ray_store_[index];
     env_.counters.slot_cycles += now - slot.since;
+    statistics_.slot_cycles += now - slot.since;
+    --env_.counters.slots_used;
     const int generation = slot.packet->ray.generation;
     env_.pools.rays.give_back(slot.packet);
     ray_store_.release(index, generation);

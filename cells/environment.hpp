@@ -28,6 +28,7 @@ struct Counters {
     std::uint64_t loads_delivered = 0;  ///< dropped behind their last cell
     std::uint64_t cells_loaded = 0;     ///< end-of-scene marks seen
     std::uint64_t pixels_done = 0;
+    std::uint64_t slots_used = 0;   ///< now, over all cells
     std::uint64_t slot_cycles = 0;  ///< sum over accepted rays of the cycles in the ray store
     std::uint64_t traversal_cycles = 0;
     std::uint64_t shading_cycles = 0;

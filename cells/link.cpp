@@ -95,6 +95,17 @@ Cycle Link::arrival(int index) const {
     return buffer.count == 0 ? never : buffer.ring[buffer.head].visible;
 }
 
+bool Link::has_room(int index) const {
+    const Buffer& buffer = buffers_[std::size_t(index)];
+    const std::uint32_t still_seen = buffer.last_pop == scheduler_.now() ? buffer.popped_now : 0;
+    return buffer.count + still_seen < std::uint32_t(depth_);
+}
+
+Cycle Link::head_since(int index) const {
+    const Buffer& buffer = buffers_[std::size_t(index)];
+    return buffer.last_pop == never ? arrival(index) : std::max(arrival(index), buffer.last_pop);
+}
+
 void Link::pop(int index) {
     Buffer& buffer = buffers_[std::size_t(index)];
     const Cycle now = scheduler_.now();

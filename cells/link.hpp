@@ -23,6 +23,8 @@ class LinkOut : virtual public sc_core::sc_interface {
     virtual void send(int index, const Message& message, int cycles) = 0;
     /// Whether the buffer of a class has no room left; for looking at a machine, not for sending.
     virtual bool full(int index) const = 0;
+    /// After can_send() said no: whether there was room, so that it was for the wires alone.
+    virtual bool has_room(int /*index*/) const { return false; }
 };
 
 /// What the receiving side sees.
@@ -32,6 +34,8 @@ class LinkIn : virtual public sc_core::sc_interface {
     virtual Message front(int index) const = 0;
     /// Cycle in which the oldest message arrived.
     virtual Cycle arrival(int index) const = 0;
+    /// Cycle from which on the oldest message has been both arrived and the oldest.
+    virtual Cycle head_since(int index) const { return arrival(index); }
     virtual void pop(int index) = 0;
     /// Messages in a buffer, those still on the wires included.
     virtual int occupancy(int index) const = 0;
@@ -90,6 +94,8 @@ class Link : public LinkOut, public LinkIn {
     void send(int index, const Message& message, int cycles) override;
     Message front(int index) const override;
     Cycle arrival(int index) const override;
+    bool has_room(int index) const override;
+    Cycle head_since(int index) const override;
     void pop(int index) override;
     void watch(int index, std::uint32_t* pending, std::uint32_t bits) override;
     int occupancy(int index) const override { return int(buffers_[std::size_t(index)].count); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cells/pool.hpp"
+#include "cells/stall.hpp"
 #include "model/message.hpp"
 #include "model/span.hpp"
 #include "model/tracing.hpp"
@@ -17,6 +18,7 @@ struct RayPacket {
     std::uint64_t launched = 0;  ///< cycle in which it was put on its way
     std::uint32_t hops = 0;      ///< since then
     std::uint64_t decided = 0;   ///< cycle in which the test was over
+    Wait wait;
 };
 
 /// A load message: polygons from geometry, trapezes from precomputation and down the column of distributors,

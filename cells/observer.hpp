@@ -6,6 +6,7 @@
 
 #include "cells/message.hpp"
 #include "cells/scheduler.hpp"
+#include "cells/stall.hpp"
 
 namespace raycell {
 
@@ -23,7 +24,8 @@ enum class CellEvent : std::uint32_t {
     test,      ///< the traversal unit began a ray's test; detail: its Visit::Event
     launch,    ///< a ray was put on its way (again); detail: its RayKind
     answer,    ///< an answer set out for its home; detail: Answer::Kind
-    direct     ///< a hit that waits for nothing went into the shading unit
+    direct,    ///< a hit that waits for nothing went into the shading unit
+    silent     ///< a precast ray reached its source: it ends without an answer
 };
 
 class CellObserver {
@@ -32,6 +34,14 @@ class CellObserver {
     /// `ray`: id of the ray that it is about, for answers the ray that they answer; 0 for loading.
     virtual void cell_event(const Cell& cell, Cycle now, CellEvent event, std::uint64_t ray,
                             std::uint32_t detail) = 0;
+    /// A ray is put on its way (again), before the event `launch`; `parent`: whose child it is, null for
+    /// primary and precast rays.
+    virtual void launched(const Cell& /*cell*/, Cycle /*now*/, const Ray& /*ray*/, const Ray* /*parent*/) {}
+    /// A ray, or the answer to it, goes on after it has waited `cycles` in a cell.
+    virtual void stalled(const Cell& /*cell*/, Cycle /*now*/, std::uint64_t /*ray*/, Stall /*cause*/,
+                         Cycle /*cycles*/) {}
+    /// An exterior processor's answer starts over the border into cell (x, y).
+    virtual void exterior_answered(int /*x*/, int /*y*/, Cycle /*now*/, const Answer& /*answer*/) {}
 };
 
 class LinkObserver {

@@ -27,6 +27,7 @@ struct Slot {
     dvec3 result{0, 0, 0};
     Cycle since = 0;    ///< when the ray was accepted
     Cycle changed = 0;  ///< when it came into its state
+    Wait wait;          ///< for the shading unit or, with its answer, for a way out
 };
 
 /// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest

@@ -86,6 +86,10 @@ Cycle Exterior::step(Cycle now) {
             Link* link = ports_[processor.port].to_cell;
             if (!link->can_send(env.classes.answer, next)) continue;
             const bool intensity = processor.answer.kind == Answer::Kind::intensity;
+            if (env.observer) {
+                const BorderPort& port = ports_[processor.port];
+                env.observer->exterior_answered(port.x, port.y, now, processor.answer);
+            }
             Answer* answer = env.pools.answers.take();
             *answer = processor.answer;
             link->send(env.classes.answer, Message(answer),

@@ -103,6 +103,7 @@ Cycle Machine::livelock_window() const {
 bool Machine::watch(void* self, Cycle now) {
     auto& machine = *static_cast<Machine*>(self);
     Environment& env = machine.environment_;
+    machine.activity_.observe(now, env.counters);
     if (env.phase == Phase::trace && env.counters.rays_destroyed > 0 &&
         now - std::max(env.counters.last_progress, env.phase_start) > machine.livelock_window()) {
         // Nothing comes home any more. With no new rays on their way, all that is not locked comes to rest.
@@ -161,7 +162,11 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     progress_ = std::move(progress);
     RunResult result;
     const PictureSettings& settings = environment_.context.settings;
+    activity_.begin(scheduler_.now(), environment_.counters);
     run_phase(Phase::load, result);
+    activity_.finish(scheduler_.now() + 1, environment_.counters);
+    result.load_activity = activity_.activity();
+    activity_.begin(scheduler_.now() + 1, environment_.counters);
     // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
     result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
     for (const auto& link : array_.links()) link->reset_statistics();
@@ -184,7 +189,10 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
         }
     } else {
         if (going() && settings.shadows == Shadows::precast) run_phase(Phase::precast, result);
+        result.trace_start = scheduler_.now() + 1;
         if (going()) run_phase(Phase::trace, result);
+        activity_.finish(scheduler_.now() + 1, environment_.counters);
+        result.activity = activity_.activity();
     }
     if (going()) check_conservation();
     collect(result);

@@ -8,6 +8,7 @@
 
 #include "cells/array.hpp"
 #include "cells/wait_map.hpp"
+#include "pipeline/activity.hpp"
 #include "pipeline/distribution.hpp"
 #include "pipeline/exterior.hpp"
 #include "pipeline/geometry.hpp"
@@ -58,6 +59,9 @@ struct RunResult {
     Cycle knot_formed = never;                    ///< cycle from which on the knot stood
     Ledger ledger;                                ///< what was destroyed and postponed
     std::vector<TimeOutResult> time_outs;
+    Activity load_activity;
+    Activity activity;      ///< of precast and trace
+    Cycle trace_start = 0;  ///< cycle in which tracing began; before it, from activity.start on, precast
     std::uint64_t schedule_hash = 0;
     double wall_load = 0;  ///< seconds
     double wall_precast = 0;
@@ -122,6 +126,7 @@ class Machine : public sc_core::sc_module {
     std::vector<std::unique_ptr<Link>> row_links_;
     std::function<void(const RunProgress&)> progress_;
     std::uint64_t watch_calls_ = 0;
+    ActivityRecorder activity_;
     Cycle drain_start_ = never;
 };
 

@@ -1,5 +1,7 @@
 #include "testbench/raycell/options.hpp"
 
+#include "testbench/raycell/ray_watch.hpp"
+
 namespace raycell {
 
 void OptionTable::text(const std::string& name, std::string& target, const std::string& type,
@@ -118,6 +120,26 @@ void OptionTable::shares(const std::string& name, double& p, double& q, const st
     entries_.push_back({name, [text] { return nlohmann::ordered_json(text()); }});
 }
 
+void OptionTable::rays(const std::string& name, std::vector<std::uint64_t>& target, const std::string& help) {
+    const auto check = [](const std::string& word) -> std::string {
+        std::uint64_t id = 0;
+        if (parse_ray(word, id)) return "";
+        return "expected PIXEL/PART, two numbers from 0 to 4294967295, not '" + printable(word) + "'";
+    };
+    const auto set = [&target](const std::vector<std::string>& words) {
+        target.clear();
+        for (const std::string& word : words) parse_ray(word, target.emplace_back());
+    };
+    app_.add_option_function<std::vector<std::string>>("--" + name, set, help)
+        ->check(CLI::Validator(check, "PIXEL/PART"))
+        ->allow_extra_args(false);
+    entries_.push_back({name, [&target] {
+                            nlohmann::ordered_json list = nlohmann::ordered_json::array();
+                            for (const std::uint64_t id : target) list.push_back(text_of_ray(id));
+                            return list;
+                        }});
+}
+
 void OptionTable::costs(CostTable& table) {
     std::string names;
     for (const auto& [name, member] : CostTable::entries()) {
@@ -191,6 +213,13 @@ void add_communication_options(OptionTable& table, MachineSettings& m) {
         "probability that a transfer or an operation takes a cycle more, and again; drawn by --seed");
     table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62,
                  "timed engine: stop after so many cycles; 0: never");
+}
+
+void add_watch_options(OptionTable& table, RenderOptions& options) {
+    table.rays("watch-ray", options.watch_rays,
+               "prints the life of the ray with this id and of its children; may come several times");
+    table.cells("watch-pixel", options.watch_pixels,
+                "prints the lives of all rays of a pixel's tree; may come several times");
 }
 
 void add_machine_options(OptionTable& table, RenderOptions& options) {

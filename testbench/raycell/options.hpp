@@ -49,6 +49,8 @@ class OptionTable {
     void cells(const std::string& name, std::vector<CellRange>& target, const std::string& help);
     /// --NAME P or P,Q: two shares from 0 to 1; P alone leaves Q at 0.
     void shares(const std::string& name, double& p, double& q, const std::string& help);
+    /// --NAME PIXEL/PART, may come several times: rays by their ids.
+    void rays(const std::string& name, std::vector<std::uint64_t>& target, const std::string& help);
     /// --cost NAME=CYCLES, may come several times
     void costs(CostTable& table);
 
@@ -74,12 +76,16 @@ struct RenderOptions {
     bool quiet = false;
     bool truth = false;
     bool clip_truth = false;
+    std::vector<std::uint64_t> watch_rays;
+    std::vector<CellRange> watch_pixels;
 };
 
 /// The options that render and truth share: scene, view, size, ray tree.
 void add_scene_options(OptionTable& table, RenderOptions& options);
 /// Ray store, buffers, networks, recovery, links, clock, limit of cycles.
 void add_communication_options(OptionTable& table, MachineSettings& machine);
+/// render's own, for watching rays.
+void add_watch_options(OptionTable& table, RenderOptions& options);
 /// The rest of render's.
 void add_machine_options(OptionTable& table, RenderOptions& options);
 

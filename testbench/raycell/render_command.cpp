@@ -6,16 +6,19 @@
 #include <fstream>
 #include <iostream>
 
+#include "cells/observer_list.hpp"
 #include "model/truth/clip.hpp"
 #include "model/truth/exterior.hpp"
 #include "model/truth/truth.hpp"
 #include "model/untimed.hpp"
+#include "testbench/raycell/cells_csv.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
 #include "testbench/raycell/knot_report.hpp"
 #include "testbench/raycell/machine_run.hpp"
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/picture_file.hpp"
+#include "testbench/raycell/ray_watch.hpp"
 #include "testbench/raycell/report_json.hpp"
 #include "testbench/raycell/scene_input.hpp"
 
@@ -49,42 +52,6 @@ struct Run {
     std::string cells_csv;
 };
 
-/// Peaks per cell; a link's buffers stand at the cell that it leads to.
-std::string cells_csv(Array& array, int width, int height) {
-    std::string text =
-        "x,y,voxels,edges,ray_store_peak,ray_buffers_peak,answer_buffers_peak,link_busy_cycles\n";
-    struct Row {
-        int rays = 0;
-        int answers = 0;
-        std::uint64_t busy = 0;
-    };
-    std::vector<Row> rows(std::size_t(width) * std::size_t(height));
-    for (std::size_t i = 0; i < array.links().size(); ++i) {
-        const Link& link = *array.links()[i];
-        Row& row = rows[array.sink_of(i)];
-        for (int index = 0; index < link.classes(); ++index) {
-            const bool answers = link.classes() > 1 && index + 1 == link.classes();
-            int& peak = answers ? row.answers : row.rays;
-            peak = std::max(peak, link.statistics(index).peak);
-        }
-        row.busy += link.busy_cycles();
-    }
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const Cell& cell = array.cell(x, y).cell();
-            const Row& row = rows[std::size_t(y) * std::size_t(width) + std::size_t(x)];
-            for (const std::uint64_t value :
-                 {std::uint64_t(x), std::uint64_t(y), std::uint64_t(cell.store().voxels.size()),
-                  std::uint64_t(cell.store().edges.size()), std::uint64_t(cell.ray_store().peak()),
-                  std::uint64_t(row.rays), std::uint64_t(row.answers)}) {
-                text += std::to_string(value) + ",";
-            }
-            text += std::to_string(row.busy) + "\n";
-        }
-    }
-    return text;
-}
-
 Run run_timed(const RenderOptions& options, const CellScene& scene, const ExteriorTracer* tracer) {
     Run run;
     const auto start = Clock::now();
@@ -97,10 +64,16 @@ Run run_timed(const RenderOptions& options, const CellScene& scene, const Exteri
     const std::uint64_t after = memory_bytes();
     run.bytes_per_cell = after > before ? (after - before) / cells : 0;
     run.wall_build = seconds_since(start);
-    const bool progress = shows_progress(options);
+    CellObserverList observers;
+    const std::unique_ptr<RayWatch> watch = watch_of(options, std::cout);
+    if (watch) observers.add(*watch);
+    if (!observers.empty()) machine.environment().observer = &observers;
+    const bool progress = shows_progress(options) && !watch;
     run.result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
-    run.cells_csv = cells_csv(machine.array(), options.picture.width, options.picture.height);
+    if (watch) watch->finish(machine.environment().scheduler.now());
+    machine.environment().observer = nullptr;
+    run.cells_csv = cells_csv(machine, run.result);
     return run;
 }
 
@@ -125,15 +98,7 @@ Run run_untimed(const RenderOptions& options, const CellScene& scene, const Exte
     result.precomputation.items = machine.loaded().trapezes;
     result.distribution.items = machine.loaded().spans;
     result.storage = machine.storage();
-    run.cells_csv = "x,y,voxels,edges\n";
-    std::size_t index = 0;
-    for (const CellStore& store : machine.cells()) {
-        const auto width = std::size_t(options.picture.width);
-        run.cells_csv += std::to_string(index % width) + "," + std::to_string(index / width) + "," +
-                         std::to_string(store.voxels.size()) + "," + std::to_string(store.edges.size()) +
-                         "\n";
-        ++index;
-    }
+    run.cells_csv = cells_csv(machine);
     if (result.storage.overflowed > 0) result.verdict = Verdict::capacity;
     return run;
 }
@@ -180,6 +145,7 @@ void summarise(const RenderOptions& options, const Json& json) {
 int run(const RenderOptions& options, const OptionTable& table) {
     check_output(options.prefix);
     check_memory(options);
+    watch_of(options, std::cout);  // refuses what can't be watched before anything is done
     const auto start = Clock::now();
     const CellScene scene = read_and_place(options);
     for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
@@ -239,6 +205,7 @@ Command add_render_command(CLI::App& program) {
         ->type_name("FILE");
     add_scene_options(*table, *options);
     add_machine_options(*table, *options);
+    add_watch_options(*table, *options);
     return {app, [options, table] { return run(*options, *table); }};
 }
 

@@ -17,6 +17,47 @@ Json stage(const StageStatistics& s, Cycle cycles) {
             {"utilisation", cycles > 0 ? double(s.busy_cycles) / double(cycles) : 0.0}};
 }
 
+/// One list per quantity: means over each bucket's cycles, or what happened in it.
+Json activity(const Activity& a) {
+    using Bucket = Activity::Bucket;
+    const auto mean = [&](std::uint64_t Bucket::*sum) {
+        Json list = Json::array();
+        for (std::size_t i = 0; i < a.buckets.size(); ++i) {
+            list.push_back(double(a.buckets[i].*sum) / double(a.cycles_of(i)));
+        }
+        return list;
+    };
+    const auto events = [&](std::uint64_t Bucket::*count) {
+        Json list = Json::array();
+        for (const Bucket& bucket : a.buckets) list.push_back(bucket.*count);
+        return list;
+    };
+    return {{"start_cycle", a.start},
+            {"cycles", a.end - a.start},
+            {"bucket_cycles", a.bucket_cycles},
+            {"rays_in_flight", mean(&Bucket::rays_in_flight)},
+            {"answers_in_flight", mean(&Bucket::answers_in_flight)},
+            {"slots_used", mean(&Bucket::slots_used)},
+            {"hops", events(&Bucket::hops)},
+            {"pixels_done", events(&Bucket::pixels_done)},
+            {"postponed", events(&Bucket::postponed)}};
+}
+
+/// Of the loading.
+Json load_activity(const Activity& a) {
+    Json hops = Json::array();
+    Json loaded = Json::array();
+    for (const Activity::Bucket& bucket : a.buckets) {
+        hops.push_back(bucket.load_hops);
+        loaded.push_back(bucket.cells_loaded);
+    }
+    return {{"start_cycle", a.start},
+            {"cycles", a.end - a.start},
+            {"bucket_cycles", a.bucket_cycles},
+            {"hops", hops},
+            {"cells_loaded", loaded}};
+}
+
 }  // namespace
 
 std::string to_text(const Json& json) {
@@ -107,6 +148,11 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
     json["deadlock"]["ledger"] = ledger_json(result);
     json["deadlock"]["time_outs"] = time_outs_json(result);
     if (result.waits.deadlocked()) json["deadlock"]["knot"] = knot_json(result);
+    if (!result.load_activity.buckets.empty()) {
+        json["activity"] = activity(result.activity);
+        json["activity"]["trace_start"] = result.trace_start;
+        json["activity"]["load"] = load_activity(result.load_activity);
+    }
     json["cube"] = {{"depth_cells", scene.frame.depth},
                     {"cell_width_world", scene.frame.cell_width},
                     {"polygons", scene.polygons.size()}};

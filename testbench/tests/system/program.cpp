@@ -23,22 +23,22 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Starts the program in `folder` with its standard streams in files there; returns the child's id.
-pid_t start(const Words& words, const fs::path& folder) {
+/// Starts a program in `folder` with its standard streams in files there; returns the child's id.
+pid_t start(const std::string& program, const Words& words, const fs::path& folder) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, 1, "stdout.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&actions, 2, "stderr.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    Words all = joined({RAYCELL_PROGRAM}, words);
+    Words all = joined({program}, words);
     std::vector<char*> arguments;
     for (std::string& word : all) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     pid_t child = 0;
-    const int error = posix_spawn(&child, RAYCELL_PROGRAM, &actions, nullptr, arguments.data(), environ);
+    const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) throw std::runtime_error(std::string("can't start ") + RAYCELL_PROGRAM);
+    if (error != 0) throw std::runtime_error("can't start " + program);
     return child;
 }
 
@@ -81,8 +81,12 @@ Workshop::~Workshop() {
 }
 
 Finished Workshop::run(const Words& words, double limit_seconds) const {
+    return run_program(RAYCELL_PROGRAM, words, limit_seconds);
+}
+
+Finished Workshop::run_program(const std::string& program, const Words& words, double limit_seconds) const {
     Finished finished;
-    await(start(words, path_), limit_seconds, finished);
+    await(start(program, words, path_), limit_seconds, finished);
     finished.out = read_text(path_ / "stdout.txt");
     finished.err = read_text(path_ / "stderr.txt");
     return finished;

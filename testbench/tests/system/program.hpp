@@ -44,6 +44,8 @@ class Workshop {
 
     /// Runs `raycell words...`; after `limit_seconds` the child is killed.
     Finished run(const Words& words, double limit_seconds = 100) const;
+    /// The same for another program, by its path.
+    Finished run_program(const std::string& program, const Words& words, double limit_seconds = 100) const;
     /// Runs `raycell render scene --quiet -o results/NAME words...`.
     Finished render(const fs::path& scene, const Words& words, const std::string& name = "a",
                     double limit_seconds = 100) const;

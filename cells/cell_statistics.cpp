@@ -1,0 +1,33 @@
+// What a cell counts about itself, and what in it stands still at the moment.
+#include "cells/cell.hpp"
+
+namespace raycell {
+
+void Cell::add_stall(const Wait& wait, std::uint64_t ray, Cycle now) {
+    const Cycle cycles = now - wait.since;
+    statistics_.stalls[std::size_t(wait.cause)] += cycles;
+    if (env_.observer) env_.observer->stalled(*this, now, ray, wait.cause, cycles);
+}
+
+CellStatistics Cell::statistics(Cycle now) const {
+    CellStatistics sum = statistics_;
+    sum.slot_cycles += ray_store_.waiting_cycles(now);
+    const auto add = [&](const Wait& wait) {
+        if (wait.cause != Stall::none && now > wait.since)
+            sum.stalls[std::size_t(wait.cause)] += now - wait.since;
+    };
+    for (std::size_t place = 0; place < place_count(); ++place) {
+        if (nothing_at(place)) continue;
+        if (const RayPacket* packet = packet_at(place)) add(wait_of(*packet, place));
+    }
+    for (const Wait& wait : answer_waits_) add(wait);
+    add(direct_wait_);
+    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
+        const Slot& slot = ray_store_[i];
+        const bool waits = slot.state == Slot::State::to_set_up || slot.state == Slot::State::to_answer;
+        if (waits || complete(slot)) add(slot.wait);
+    }
+    return sum;
+}
+
+}  // namespace raycell

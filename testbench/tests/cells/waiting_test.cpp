@@ -1,0 +1,233 @@
+// What cells count about themselves: waiting by cause, to the cycle, however often a cell is woken.
+#include "../truth/hand_made.hpp"
+#include "cells/observer_list.hpp"
+#include "elaboration.hpp"
+#include "testbench/raycell/ray_watch.hpp"
+
+namespace raycell {
+namespace {
+
+/// An empty cell whose neighbours are played by the test.
+struct EmptyCell {
+    EmptyCell() : scene(hand_made::cube(3, 3, 100)), picture(3, 3) {
+        expect_first_elaboration();
+        scene.frame.depth_levels = 10;
+        settings.width = settings.height = 3;
+        settings.exterior = ExteriorMode::none;
+        environment = std::make_unique<Environment>(scene, settings, machine, scheduler, picture);
+        environment->phase = Phase::trace;
+        cell = std::make_unique<CellModule>("cell", *environment, 1, 1);
+        for (int side = 0; side < side_count; ++side) {
+            for (auto* links : {&in, &out}) {
+                links->push_back(
+                    std::make_unique<Link>(scheduler, environment->classes.count, machine.buffer_depth));
+            }
+            in.back()->connect_sink(*cell);
+            out.back()->connect_source(*cell);
+            cell->in[std::size_t(side)].bind(*in.back());
+            cell->out[std::size_t(side)].bind(*out.back());
+        }
+    }
+    /// Sends a ray over a link, visible in the next cycle.
+    void send_ray(Link& link, const dvec3& position, const dvec3& direction, int cycles = 1) {
+        RayPacket* packet = environment->pools.rays.take();
+        packet->ray.position = position;
+        set_direction(packet->ray, direction, environment->context.arithmetic);
+        link.send(environment->classes.ray(packet->ray), Message(packet), cycles);
+    }
+    void send_answer(Link& link, int home_x, int cycles = 1) {
+        Answer* answer = environment->pools.answers.take();
+        answer->home_x = std::uint16_t(home_x);
+        answer->home_y = 1;
+        link.send(environment->classes.answer, Message(answer), cycles);
+    }
+    /// Calls `script` in each cycle up to `cycles`; with `restless`, the cell is woken in each of them too.
+    CellStatistics run(Cycle cycles, bool restless, const std::function<void(Cycle)>& script) {
+        Actor actor("actor", scheduler, [&](Cycle now) {
+            script(now);
+            if (restless) scheduler.wake(*cell, now + 1);
+            return now < cycles ? now + 1 : never;
+        });
+        scheduler.wake(actor, 1);
+        sc_core::sc_start();
+        return cell->cell().statistics(scheduler.now());
+    }
+    Link& east_out() { return *out[std::size_t(Side::east)]; }
+    Link& from(Side side) { return *in[std::size_t(side)]; }
+
+    Scheduler scheduler{"scheduler", sc_core::sc_time(50, sc_core::SC_NS)};
+    CellScene scene;
+    PictureSettings settings;
+    MachineSettings machine;
+    Picture picture;
+    std::unique_ptr<Environment> environment;
+    std::unique_ptr<CellModule> cell;
+    std::vector<std::unique_ptr<Link>> in;
+    std::vector<std::unique_ptr<Link>> out;
+};
+
+std::uint64_t cycles_of(const CellStatistics& s, Stall cause) { return s.stalls[std::size_t(cause)]; }
+
+std::uint64_t all_cycles(const CellStatistics& s) {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t cycles : s.stalls) sum += cycles;
+    return sum;
+}
+
+const dvec3 west_edge{0, 0.5, 5};
+const dvec3 eastwards{1, 0, 0};
+
+/// A ray is decided in cycle 6; the next buffer has room from cycle 51 on; an answer takes the wires from 40
+/// to 70.
+void full_then_busy(bool restless) {
+    EmptyCell empty;
+    const int index = 0;  // half: east
+    const CellStatistics s = empty.run(100, restless, [&](Cycle now) {
+        if (now == 1) {
+            empty.send_ray(empty.east_out(), west_edge, eastwards);
+            empty.send_ray(empty.from(Side::west), west_edge, eastwards);
+        }
+        if (now == 40) empty.send_answer(empty.east_out(), 2, 30);
+        if (now == 50) empty.east_out().pop(index);
+    });
+    ASSERT_EQ(empty.machine.costs.walk_step, 4u);
+    EXPECT_EQ(cycles_of(s, Stall::output_full), 51u - 6u);
+    EXPECT_EQ(cycles_of(s, Stall::output_busy), 70u - 51u);
+    EXPECT_EQ(all_cycles(s), 70u - 6u) << "nothing else";
+    EXPECT_EQ(s.ray_hops, 1u);
+    EXPECT_EQ(s.traversal_cycles, 4u);
+}
+
+TEST(CellWaiting, ForRoomAndThenForTheWiresIsCountedToTheCycle) { full_then_busy(false); }
+
+TEST(CellWaiting, ForRoomAndThenForTheWiresIsTheSameInARestlessCell) { full_then_busy(true); }
+
+TEST(CellWaiting, ForRoomThatNeverComesCountsUpToTheEnd) {
+    EmptyCell empty;
+    const CellStatistics s = empty.run(100, false, [&](Cycle now) {
+        if (now != 1) return;
+        empty.send_ray(empty.east_out(), west_edge, eastwards);
+        empty.send_ray(empty.from(Side::west), west_edge, eastwards);
+    });
+    EXPECT_EQ(empty.scheduler.now(), 100u);
+    EXPECT_EQ(cycles_of(s, Stall::output_full), 100u - 6u);
+    EXPECT_EQ(all_cycles(s), 100u - 6u);
+    EXPECT_EQ(s.ray_hops, 0u);
+}
+
+TEST(CellWaiting, OfTwoRaysTheSecondWaitsForTheFirstsTest) {
+    EmptyCell empty;
+    const CellStatistics s = empty.run(100, false, [&](Cycle now) {
+        if (now != 1) return;
+        empty.send_ray(empty.from(Side::west), west_edge, eastwards);
+        empty.send_ray(empty.from(Side::south), {0.5, 1, 5}, {0, -1, 0});
+    });
+    EXPECT_EQ(cycles_of(s, Stall::traversal), 4u);
+    EXPECT_EQ(all_cycles(s), 4u);
+    EXPECT_EQ(s.ray_hops, 2u);
+}
+
+TEST(CellWaiting, AnAnswerWaitsForRoomFromItsRoutingOn) {
+    EmptyCell empty;
+    const CellStatistics s = empty.run(100, false, [&](Cycle now) {
+        if (now == 1) {
+            empty.send_answer(empty.east_out(), 2);
+            empty.send_answer(empty.from(Side::west), 2);
+        }
+        if (now == 30) empty.east_out().pop(empty.environment->classes.answer);
+    });
+    ASSERT_EQ(empty.machine.costs.route_return, 1u);
+    EXPECT_EQ(cycles_of(s, Stall::answer_full), 31u - 3u);
+    EXPECT_EQ(all_cycles(s), 31u - 3u);
+    EXPECT_EQ(s.return_hops, 1u);
+}
+
+TEST(CellWaiting, AFreeWayIsNoWaiting) {
+    EmptyCell empty;
+    const CellStatistics s = empty.run(100, true, [&](Cycle now) {
+        if (now == 1) empty.send_ray(empty.from(Side::west), west_edge, eastwards);
+        if (now == 1) empty.send_answer(empty.from(Side::south), 0);
+    });
+    EXPECT_EQ(all_cycles(s), 0u);
+    EXPECT_EQ(s.ray_hops + s.return_hops, 2u);
+}
+
+TEST(CellWaiting, AWholeRunCountsTheSameWhenItsCellsAreWokenForNothing) {
+    expect_first_elaboration();
+    const std::uint64_t seed = property::seeds(1, 1).front();
+    SCOPED_TRACE(property::rerun(seed));
+    property::Random random(seed);
+    PictureSettings settings;
+    settings.width = settings.height = 16;
+    MachineSettings machine;
+    machine.ray_store = 5;
+    const auto placed = place_own_scene("facing_mirrors", settings);
+    Machine calm("calm", placed->scene, settings, machine, placed->exterior.get());
+    Machine woken("woken", placed->scene, settings, machine, placed->exterior.get());
+    const RunResult expected = calm.run();
+    Environment& env = woken.environment();
+    env.scheduler.set_sampler([&](Cycle now) {
+        if (env.phase != Phase::trace || env.counters.pixels_done == 256) return;
+        for (int i = 0; i < 8; ++i) {
+            const int cell = random.whole(0, 255);
+            env.scheduler.wake(woken.array().cell(cell % 16, cell / 16), now + 1);
+        }
+    });
+    const RunResult result = woken.run();
+    EXPECT_EQ(result.schedule_hash, expected.schedule_hash);
+    EXPECT_EQ(result.trace_cycles, expected.trace_cycles);
+    EXPECT_GT(env.scheduler.activations(), calm.environment().scheduler.activations() + 1000);
+    std::uint64_t waited = 0;
+    for (int y = 0; y < 16; ++y) {
+        for (int x = 0; x < 16; ++x) {
+            const CellStatistics a =
+                calm.array().cell(x, y).cell().statistics(calm.environment().scheduler.now());
+            const CellStatistics b = woken.array().cell(x, y).cell().statistics(env.scheduler.now());
+            ASSERT_EQ(a.stalls, b.stalls) << x << ", " << y;
+            ASSERT_EQ(a.slot_cycles, b.slot_cycles);
+            waited += all_cycles(a);
+        }
+    }
+    EXPECT_GT(waited, 10000u);
+}
+
+TEST(RayWatchOrder, EventsOfACycleComeByCellWhateverCellRanFirst) {
+    expect_first_elaboration();
+    PictureSettings settings;
+    settings.width = settings.height = 4;
+    const MachineSettings machine;
+    const auto placed = place_own_scene("cornell", settings);
+    Machine idle("machine", placed->scene, settings, machine, placed->exterior.get());
+    const auto told = [&](const std::vector<int>& order) {
+        std::ostringstream text;
+        RayWatch watch(text, machine.networks, 4, 4);
+        for (int i = 0; i < 16; ++i) watch.watch_pixel(i % 4, i / 4);
+        CellObserverList list;
+        list.add(watch);
+        for (const int i : order) {
+            const Cell& cell = idle.array().cell(i % 4, i / 4).cell();
+            Ray ray;
+            ray.id = std::uint64_t(i) << 32;
+            list.launched(cell, 7, ray, nullptr);
+            list.cell_event(cell, 7, CellEvent::launch, ray.id, 0);
+            list.cell_event(cell, 7, CellEvent::test, ray.id, std::uint32_t(Visit::Event::forward));
+        }
+        for (const int i : order) {
+            const Cell& cell = idle.array().cell(i % 4, i / 4).cell();
+            list.cell_event(cell, 9, CellEvent::send, std::uint64_t(i) << 32,
+                            std::uint32_t(Side::south) << 8);
+            list.stalled(cell, 9, std::uint64_t(i) << 32, Stall::output_full, 2);
+        }
+        watch.finish(9);
+        return text.str();
+    };
+    const std::string expected = told({2, 5, 11});
+    EXPECT_NE(expected.find("hops south, class ray_east; waited 2 cycles (output_full)"), std::string::npos);
+    EXPECT_NE(expected.find("watched: 3 rays, 3 hops"), std::string::npos);
+    for (const std::vector<int>& order : {std::vector<int>{11, 5, 2}, {5, 2, 11}, {11, 2, 5}}) {
+        EXPECT_EQ(told(order), expected);
+    }
+}
+
+}  // namespace
+}  // namespace raycell
