@@ -26,6 +26,14 @@ bool Link::can_send(int index, Cycle& retry) {
     return true;
 }
 
+LinkOut::Room Link::room(int index) const {
+    const Buffer& buffer = buffers_[std::size_t(index)];
+    const Cycle now = scheduler_.now();
+    const std::uint32_t still_seen = buffer.last_pop == now ? buffer.popped_now : 0;
+    if (buffer.count + still_seen >= std::uint32_t(depth_)) return Room::full;
+    return wires_free_ > now ? Room::wires_busy : Room::free;
+}
+
 void Link::send(int index, const Message& message, int cycles) {
     Buffer& buffer = buffers_[std::size_t(index)];
     const Cycle now = scheduler_.now();

@@ -16,17 +16,18 @@ std::size_t RayStore::group(int generation) const {
     return std::min(std::size_t(generation), used_by_.size() - 1);
 }
 
+bool RayStore::has_room(int generation) const {
+    if (used_ >= capacity_) return false;
+    if (used_by_.empty() || used_by_[group(generation)] == 0) return true;
+    // The reserved slot is taken: one of those free for all, if any is left.
+    int borrowed = 0;
+    for (const std::uint16_t used : used_by_) borrowed += std::max(0, used - 1);
+    return borrowed < shared_;
+}
+
 std::optional<std::uint32_t> RayStore::allocate(int generation) {
-    if (used_ >= capacity_) return std::nullopt;
-    if (!used_by_.empty()) {
-        std::uint16_t& mine = used_by_[group(generation)];
-        if (mine > 0) {  // the reserved slot is taken: one of those free for all, if any is left
-            int borrowed = 0;
-            for (const std::uint16_t used : used_by_) borrowed += std::max(0, used - 1);
-            if (borrowed >= shared_) return std::nullopt;
-        }
-        ++mine;
-    }
+    if (!has_room(generation)) return std::nullopt;
+    if (!used_by_.empty()) ++used_by_[group(generation)];
     ++used_;
     peak_ = std::max(peak_, used_);
     if (!free_.empty()) {

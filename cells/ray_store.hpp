@@ -38,6 +38,8 @@ class RayStore {
     /// The index of a slot for a ray of this generation, or nothing.
     std::optional<std::uint32_t> allocate(int generation);
     void release(std::uint32_t index, int generation);
+    /// Whether allocate() would find a slot.
+    bool has_room(int generation) const;
 
     Slot& operator[](std::uint32_t index) { return slots_[index]; }
     const Slot& operator[](std::uint32_t index) const { return slots_[index]; }

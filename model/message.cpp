@@ -91,6 +91,19 @@ BufferClasses buffer_classes(Networks networks) {
     return classes;
 }
 
+const char* name_of_class(Networks networks, int index) {
+    static const char* const quadrants[] = {"ray_east_south", "ray_west_south", "ray_east_north",
+                                            "ray_west_north", "answer"};
+    static const char* const halves[] = {"ray_east", "ray_west", "answer"};
+    static const char* const split[] = {"ray", "answer"};
+    static const char* const shared[] = {"all"};
+    const char* const* names = networks == Networks::quadrant ? quadrants
+                               : networks == Networks::half   ? halves
+                               : networks == Networks::split  ? split
+                                                              : shared;
+    return names[index];
+}
+
 int BufferClasses::ray(const Ray& r) const {
     const int west = r.direction.x < 0 ? 1 : 0;
     const int north = r.direction.y < 0 ? 1 : 0;

@@ -55,5 +55,7 @@ struct BufferClasses {
     Networks networks = Networks::split;
 };
 BufferClasses buffer_classes(Networks networks);
+/// Names of the classes, by index: ray_east, answer, ...
+const char* name_of_class(Networks networks, int index);
 
 }  // namespace raycell

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
+#include <tuple>
 
 #include "model/loading.hpp"
 
@@ -132,6 +133,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     }
     // No free-running clock: this returns when nobody has anything to do any more.
     sc_core::sc_start();
+    scheduler_.sample();
     if (!phase_complete()) judge(result);
     // A phase is over with its last message; what woke after that only found nothing to do.
     const Cycle end = result.verdict == Verdict::completed
@@ -234,6 +236,21 @@ std::vector<std::string> Machine::stuck_report() const {
     return lines;
 }
 
+std::vector<std::pair<int, int>> Machine::blocked_cells(std::size_t most) const {
+    std::vector<std::tuple<Cycle, int, int>> found;  // (since, y, x)
+    for (const auto& module : array_.cells()) {
+        const Cell& cell = module->cell();
+        // Cells that hold rays but no message come last.
+        const Cycle since = cell.busy() ? std::min(cell.oldest_arrival(), never - 1) : cell.oldest_arrival();
+        if (since != never) found.emplace_back(since, cell.y(), cell.x());
+    }
+    std::sort(found.begin(), found.end());
+    if (found.size() > most) found.resize(most);
+    std::vector<std::pair<int, int>> cells;
+    for (const auto& [since, y, x] : found) cells.emplace_back(x, y);
+    return cells;
+}
+
 RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     progress_ = std::move(progress);
     RunResult result;
@@ -321,19 +338,10 @@ RunResult::BufferUse Machine::buffer_use(const char* class_name, int index, Cycl
 
 void Machine::collect_buffers(RunResult& result) const {
     if (environment_.phase == Phase::load) return;
-    static const char* const quadrants[] = {"ray_east_south", "ray_west_south", "ray_east_north",
-                                            "ray_west_north", "answer"};
-    static const char* const halves[] = {"ray_east", "ray_west", "answer"};
-    static const char* const split[] = {"ray", "answer"};
-    static const char* const shared[] = {"all"};
     const Networks networks = environment_.machine.networks;
-    const char* const* names = networks == Networks::quadrant ? quadrants
-                               : networks == Networks::half   ? halves
-                               : networks == Networks::split  ? split
-                                                              : shared;
     for (int index = 0; index < environment_.classes.count; ++index) {
         result.buffers.push_back(
-            buffer_use(names[index], index, result.precast_cycles + result.trace_cycles));
+            buffer_use(name_of_class(networks, index), index, result.precast_cycles + result.trace_cycles));
     }
 }
 

@@ -27,6 +27,22 @@ bool parse_number(const std::string& word, T& value) {
     return error == std::errc() && stop == word.data() + word.size() && !word.empty();
 }
 
+/// Cycles of a run from its start, both ends included; `open`: to its end.
+struct CycleWindow {
+    static constexpr std::uint64_t open = ~std::uint64_t(0);
+    std::uint64_t from = 0;
+    std::uint64_t to = open;
+};
+
+/// What is to be seen of a run as waveforms.
+struct ProbeOptions {
+    std::vector<CellRange> cells;
+    CycleWindow window;
+    bool on_deadlock = false;      ///< of a deadlock's knot alone
+    std::int64_t last = 2000;      ///< cycles before the deadlock formed
+    std::int64_t limit_mb = 1024;  ///< of a dump, 10^6 bytes
+};
+
 /// Registers options with CLI11 and remembers how to read their effective values back.
 class OptionTable {
   public:
@@ -47,6 +63,8 @@ class OptionTable {
     /// --NAME X,Y or X0..X1,Y0..Y1, may come several times: cells of the array. Whether they lie inside it is
     /// for the command to check.
     void cells(const std::string& name, std::vector<CellRange>& target, const std::string& help);
+    /// --NAME FROM:TO, cycles; either side may be empty.
+    void window(const std::string& name, CycleWindow& target, const std::string& help);
     /// --cost NAME=CYCLES, may come several times
     void costs(CostTable& table);
 
@@ -72,12 +90,15 @@ struct RenderOptions {
     bool quiet = false;
     bool truth = false;
     bool clip_truth = false;
+    ProbeOptions probes;
 };
 
 /// The options that render and truth share: scene, view, size, ray tree.
 void add_scene_options(OptionTable& table, RenderOptions& options);
-/// The rest of render's.
+/// The rest of what makes a run.
 void add_machine_options(OptionTable& table, RenderOptions& options);
+/// Waveforms of cells.
+void add_probe_options(OptionTable& table, RenderOptions& options);
 
 template <typename T>
 void OptionTable::number(const std::string& name, T& target, T least, T most, const std::string& help) {

@@ -12,9 +12,11 @@
 #include "model/untimed.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/deadlock_dump.hpp"
 #include "testbench/raycell/machine_run.hpp"
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/picture_file.hpp"
+#include "testbench/raycell/probe_run.hpp"
 #include "testbench/raycell/report_json.hpp"
 #include "testbench/raycell/scene_input.hpp"
 
@@ -46,6 +48,8 @@ struct Run {
     double wall_build = 0;
     std::uint64_t bytes_per_cell = 0;
     std::string cells_csv;
+    std::unique_ptr<ProbeRun> probes;  ///< null: none
+    DeadlockedCells deadlocked;        ///< with --vcd-on-deadlock
 };
 
 /// Peaks per cell; a link's buffers stand at the cell that it leads to.
@@ -96,9 +100,14 @@ Run run_timed(const RenderOptions& options, const CellScene& scene, const Exteri
     const std::uint64_t after = memory_bytes();
     run.bytes_per_cell = after > before ? (after - before) / cells : 0;
     run.wall_build = seconds_since(start);
+    if (!options.probes.cells.empty()) run.probes = std::make_unique<ProbeRun>(options, machine);
     const bool progress = shows_progress(options);
     run.result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
+    if (run.probes) run.probes->finish();
+    if (options.probes.on_deadlock && run.result.verdict == Verdict::deadlock) {
+        run.deadlocked = deadlocked_cells(run.result, machine);
+    }
     run.cells_csv = cells_csv(machine.array(), options.picture.width, options.picture.height);
     return run;
 }
@@ -174,11 +183,17 @@ void summarise(const RenderOptions& options, const Json& json) {
                   << json["accuracy"]["wrong_hit_percent"].get<double>() << " % of the pixels\n";
     }
     std::cout << "picture: " << options.prefix << ".png\n";
+    if (json["verdict"] == "deadlock" ? options.probes.on_deadlock || !options.probes.cells.empty()
+                                      : !options.probes.cells.empty()) {
+        std::cout << "waveforms: " << options.prefix << ".vcd, to be opened with " << options.prefix
+                  << ".gtkw\n";
+    }
 }
 
 int run(const RenderOptions& options, const OptionTable& table) {
     check_output(options.prefix);
     check_memory(options);
+    check_probes(options);
     const auto start = Clock::now();
     const CellScene scene = read_and_place(options);
     for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
@@ -210,6 +225,10 @@ int run(const RenderOptions& options, const OptionTable& table) {
     outputs.write(".cells.csv", [&](const std::string& path) { write_text(path, done.cells_csv); });
     outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(config)); });
     outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
+    if (done.probes) done.probes->write(outputs);
+    if (!done.deadlocked.cells.empty()) {
+        dump_deadlock(options, config, done.deadlocked, result.schedule_hash, outputs);
+    }
     outputs.keep();
     explain(result);
     if (!options.quiet) summarise(options, json);
@@ -226,6 +245,7 @@ Command add_render_command(CLI::App& program) {
         ->type_name("FILE");
     add_scene_options(*table, *options);
     add_machine_options(*table, *options);
+    add_probe_options(*table, *options);
     return {app, [options, table] { return run(*options, *table); }};
 }
 
