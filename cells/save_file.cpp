@@ -67,9 +67,7 @@ class Writer {
         for (const std::string& scope : scopes_) path += scope + ".";
         path += d.name;
         if (d.bits > 1) path += "[" + std::to_string(d.bits - 1) + ":0]";
-        // The group's name in front: lines scroll out of sight of their group.
-        const std::string alias = scopes_.size() > 2 ? scopes_.back() + "." + d.name : d.name;
-        text_ += "+{" + alias + "} " + path + "\n";
+        text_ += path + "\n";
     }
 
     std::string text_;
@@ -82,9 +80,9 @@ class Writer {
 
 std::string gtkwave_save_file(const std::vector<VcdWriter::Declaration>& declarations,
                               const std::string& name, std::uint64_t from, std::uint64_t cycle) {
-    // GTKWave's zoom: 2^-zoom units of time a pixel.
+    // GTKWave's zoom: 200 pixels show 2^-zoom units of time.
     constexpr double pixels_per_cycle = 8;
-    const double zoom = -std::log2(double(cycle) / pixels_per_cycle);
+    const double zoom = -std::log2(double(cycle) * 200 / pixels_per_cycle);
     Writer writer("[*] raycell\n[dumpfile] \"" + name + ".vcd\"\n[savefile] \"" + name +
                   ".gtkw\"\n[timestart] " + std::to_string(from) + "\n[size] 1600 900\n[pos] -1 -1\n*" +
                   std::to_string(zoom) + " -1\n[sst_expanded] 0\n[signals_width] 260\n");

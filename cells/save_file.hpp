@@ -1,4 +1,4 @@
-// GTKWave's save file beside a dump: groups as the dump's scopes, short names, a radix each.
+// GTKWave's save file beside a dump: groups as the dump's scopes, a radix for each signal.
 #pragma once
 
 #include <string>

@@ -69,6 +69,30 @@ int run_again(std::vector<std::string> words, const std::string& errors) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/// The configuration of the second run, whose results go to `prefix`.
+nlohmann::ordered_json probing(nlohmann::ordered_json config, const RenderOptions& options,
+                               const DeadlockedCells& where, const std::string& prefix) {
+    nlohmann::ordered_json cells = nlohmann::ordered_json::array();
+    for (const auto& [x, y] : where.cells) cells.push_back(std::to_string(x) + "," + std::to_string(y));
+    const Cycle last = Cycle(options.probes.last);
+    config["probe"] = cells;
+    config["window"] = std::to_string(where.formed > last ? where.formed - last : 0) + ":";
+    config["vcd-on-deadlock"] = false;
+    config["truth"] = false;
+    config["quiet"] = true;
+    config["output"] = prefix;
+    return config;
+}
+
+/// What the second run had to say about the dump's size, under the dump's final name.
+void pass_on_warnings(const std::string& said, const std::string& prefix) {
+    std::istringstream lines(said);
+    for (std::string line; std::getline(lines, line);) {
+        const auto at = line.find("warning: the dump");
+        if (at != std::string::npos) std::cerr << prefix << ".vcd: " << line.substr(at) << '\n';
+    }
+}
+
 }  // namespace
 
 DeadlockedCells deadlocked_cells(const RunResult& result, Machine& machine) {
@@ -82,31 +106,17 @@ DeadlockedCells deadlocked_cells(const RunResult& result, Machine& machine) {
 void dump_deadlock(const RenderOptions& options, nlohmann::ordered_json config, const DeadlockedCells& where,
                    std::uint64_t schedule_hash, OutputSet& outputs) {
     const ScratchFolder folder(options.prefix);
-    const std::string name = fs::path(options.prefix).filename().string();
-    const std::string prefix = (folder.path() / name).string();
-    nlohmann::ordered_json probes = nlohmann::ordered_json::array();
-    for (const auto& [x, y] : where.cells) probes.push_back(std::to_string(x) + "," + std::to_string(y));
-    const Cycle last = Cycle(options.probes.last);
-    config["probe"] = probes;
-    config["window"] = std::to_string(where.formed > last ? where.formed - last : 0) + ":";
-    config["vcd-on-deadlock"] = false;
-    config["truth"] = false;
-    config["quiet"] = true;
-    config["output"] = prefix;
+    const std::string prefix = (folder.path() / fs::path(options.prefix).filename()).string();
     const std::string file = (folder.path() / "configuration").string();
     const std::string errors = (folder.path() / "errors").string();
-    write_text(file, to_toml(config));
+    write_text(file, to_toml(probing(std::move(config), options, where, prefix)));
     const int code = run_again({"raycell", "render", "--config", file}, errors);
     const std::string said = read_text(errors);
     if (code != exit_stuck) {
         throw std::runtime_error("--vcd-on-deadlock: the second run ended with exit code " +
                                  std::to_string(code) + ": " + said);
     }
-    std::istringstream lines(said);
-    for (std::string line; std::getline(lines, line);) {
-        const auto at = line.find("warning: the dump");
-        if (at != std::string::npos) std::cerr << options.prefix << ".vcd: " << line.substr(at) << '\n';
-    }
+    pass_on_warnings(said, options.prefix);
     const auto report = nlohmann::ordered_json::parse(read_text(prefix + ".json"));
     if (report["hash"]["schedule"] != hex(schedule_hash)) {
         throw std::logic_error("internal error: the second run is not the first: schedule " +
