@@ -170,7 +170,8 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
     }
     LinkOut* out = out_[std::size_t(route(answer))];
     if (!out->can_send(env_.classes.answer, next_)) {
-        cause_ = out->has_room(env_.classes.answer) ? Stall::answer_busy : Stall::answer_full;
+        cause_ =
+            out->room(env_.classes.answer) == LinkOut::Room::full ? Stall::answer_full : Stall::answer_busy;
         return false;
     }
     ++env_.counters.answers_sent;
@@ -233,7 +234,8 @@ void Cell::move_answer(LinkIn& in, Wait& wait, Cycle now) {
         LinkOut* out = out_[std::size_t(way)];
         if (!out->can_send(index, next_)) {
             blocked_ = true;
-            stall(wait, out->has_room(index) ? Stall::answer_busy : Stall::answer_full, id, now);
+            stall(wait, out->room(index) == LinkOut::Room::full ? Stall::answer_full : Stall::answer_busy, id,
+                  now);
             return;
         }
         ++env_.counters.rays.return_hops;
@@ -327,7 +329,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     LinkOut* out = out_[std::size_t(side)];
     const int index = env_.classes.ray(ray);
     if (!out->can_send(index, next_)) {
-        cause_ = out->has_room(index) ? Stall::output_busy : Stall::output_full;
+        cause_ = out->room(index) == LinkOut::Room::full ? Stall::output_full : Stall::output_busy;
         return false;
     }
     remove_from(place);

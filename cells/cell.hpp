@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cells/cell_view.hpp"
 #include "cells/environment.hpp"
 #include "cells/link.hpp"
 #include "cells/ray_store.hpp"
@@ -50,6 +51,22 @@ class Cell {
     void add_places(WaitMap& map) const;
     void add_waits(WaitMap& map) const;
 
+    // What a probe sees, as it stands at the end of cycle `now`, the last one run (cell_view.cpp).
+    const LinkIn* input(Side side) const { return in_[std::size_t(side)]; }
+    const LinkIn* load_input() const { return load_in_; }
+    const RayPacket* own_ray() const { return own_; }
+    /// What the oldest message of a buffer waits for; `in` is one of the cell's inputs.
+    HeadStall stall_of(const LinkIn& in, int index, Cycle now) const;
+    /// What a ray that stands in this cell waits for: in a buffer, the own ray or a slot's child.
+    HeadStall stall_of(const RayPacket& packet, Cycle now) const;
+    /// What a slot's child or its reply waits for.
+    HeadStall stall_of(const Slot& slot, Cycle now) const;
+    UnitView traversal_unit() const;
+    UnitView shading_unit() const;
+    UnitView loading_unit(Cycle now) const;
+    /// Cycle in which the oldest message in the cell's inputs arrived, `never` if there is none.
+    Cycle oldest_arrival() const;
+
   private:
     struct RayInput {
         LinkIn* link;
@@ -93,6 +110,7 @@ class Cell {
     bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
     bool end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
     bool send_answer(const Answer& answer, Cycle now);
+    HeadStall stall_of_answer(const Answer& answer, Cycle now) const;
     Side route(const Answer& answer) const;
     // cell_overdue.cpp
     void move_overdue(Cycle now);

@@ -28,6 +28,14 @@ bool Link::can_send(int index, Cycle& retry) {
     return true;
 }
 
+LinkOut::Room Link::room(int index) const {
+    const Buffer& buffer = buffers_[std::size_t(index)];
+    const Cycle now = scheduler_.now();
+    const std::uint32_t still_seen = buffer.last_pop == now ? buffer.popped_now : 0;
+    if (buffer.count + still_seen >= std::uint32_t(depth_)) return Room::full;
+    return wires_free_ > now ? Room::wires_busy : Room::free;
+}
+
 void Link::send(int index, const Message& message, int cycles) {
     Buffer& buffer = buffers_[std::size_t(index)];
     const Cycle now = scheduler_.now();
@@ -93,12 +101,6 @@ Link::Held Link::held(int index, int place) const {
 Cycle Link::arrival(int index) const {
     const Buffer& buffer = buffers_[std::size_t(index)];
     return buffer.count == 0 ? never : buffer.ring[buffer.head].visible;
-}
-
-bool Link::has_room(int index) const {
-    const Buffer& buffer = buffers_[std::size_t(index)];
-    const std::uint32_t still_seen = buffer.last_pop == scheduler_.now() ? buffer.popped_now : 0;
-    return buffer.count + still_seen < std::uint32_t(depth_);
 }
 
 Cycle Link::head_since(int index) const {

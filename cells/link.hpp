@@ -19,12 +19,14 @@ class LinkOut : virtual public sc_core::sc_interface {
     /// the cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is
     /// woken in the cycle after room was made.
     virtual bool can_send(int index, Cycle& retry) = 0;
+    /// What can_send() would say, without asking to be woken: for whoever watches. A channel that can't tell
+    /// says free.
+    enum class Room : std::uint8_t { free, wires_busy, full };
+    virtual Room room(int /*index*/) const { return Room::free; }
     /// Starts a message; it is visible at the far end after its link cycles.
     virtual void send(int index, const Message& message, int cycles) = 0;
     /// Whether the buffer of a class has no room left; for looking at a machine, not for sending.
     virtual bool full(int index) const = 0;
-    /// After can_send() said no: whether there was room, so that it was for the wires alone.
-    virtual bool has_room(int /*index*/) const { return false; }
 };
 
 /// What the receiving side sees.
@@ -91,10 +93,10 @@ class Link : public LinkOut, public LinkIn {
     const std::string& name() const { return name_; }
 
     bool can_send(int index, Cycle& retry) override;
+    Room room(int index) const override;
     void send(int index, const Message& message, int cycles) override;
     Message front(int index) const override;
     Cycle arrival(int index) const override;
-    bool has_room(int index) const override;
     Cycle head_since(int index) const override;
     void pop(int index) override;
     void watch(int index, std::uint32_t* pending, std::uint32_t bits) override;

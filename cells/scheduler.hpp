@@ -18,10 +18,12 @@ class Client {
     virtual ~Client() = default;
     /// Makes the client's process run in this evaluation phase.
     virtual void activate() = 0;
+    /// Last cycle in which it was activated; `never` before the first.
+    Cycle woken() const { return woken_; }
 
   private:
     friend class Scheduler;
-    Cycle woken_ = never;  ///< last cycle in which it was activated
+    Cycle woken_ = never;
 };
 
 /// One SC_METHOD that runs in each cycle in which somebody is to be woken.
@@ -55,6 +57,13 @@ class Scheduler : public sc_core::sc_module {
     /// Puts the time of a run that has stopped, without running anybody: for looking at it as it would be
     /// later.
     void set_now(Cycle now) { now_ = now; }
+
+    /// Has the cycle that was run last sampled; after sc_start(), when no cycle comes that would do it.
+    void sample() {
+        if (sampler_) sampler_(now_);
+    }
+    /// The cycle that will be run next, or is about to be when a sampler is called; `never` if none is known.
+    Cycle next() const { return scheduled_; }
 
     std::uint64_t activations() const { return activations_; }
 

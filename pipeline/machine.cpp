@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
+#include <tuple>
 
 #include "model/loading.hpp"
 #include "model/traffic.hpp"
@@ -138,6 +139,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     }
     // No free-running clock: this returns when nobody has anything to do any more.
     sc_core::sc_start();
+    scheduler_.sample();
     if (!phase_complete()) judge(result);
     // A phase is over with its last message; what woke after that only found nothing to do.
     const Cycle end = result.verdict == Verdict::completed

@@ -91,6 +91,9 @@ class Machine : public sc_core::sc_module {
     Array& array() { return array_; }
     Environment& environment() { return environment_; }
 
+    /// Cells, (x, y), in which something stands: those with the oldest messages first, `most` at most.
+    std::vector<std::pair<int, int>> blocked_cells(std::size_t most) const;
+
     /// Cycles without any answer coming home after which postponing is called a livelock.
     Cycle livelock_window() const;
 

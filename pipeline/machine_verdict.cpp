@@ -136,6 +136,21 @@ std::vector<std::string> Machine::stuck_report() const {
     return lines;
 }
 
+std::vector<std::pair<int, int>> Machine::blocked_cells(std::size_t most) const {
+    std::vector<std::tuple<Cycle, int, int>> found;  // (since, y, x)
+    for (const auto& module : array_.cells()) {
+        const Cell& cell = module->cell();
+        // Cells that hold rays but no message come last.
+        const Cycle since = cell.busy() ? std::min(cell.oldest_arrival(), never - 1) : cell.oldest_arrival();
+        if (since != never) found.emplace_back(since, cell.y(), cell.x());
+    }
+    std::sort(found.begin(), found.end());
+    if (found.size() > most) found.resize(most);
+    std::vector<std::pair<int, int>> cells;
+    for (const auto& [since, y, x] : found) cells.emplace_back(x, y);
+    return cells;
+}
+
 void Machine::collect_time_outs(RunResult& result) const {
     const auto index = [&](int x, int y) {
         return std::size_t(y) * std::size_t(environment_.width()) + std::size_t(x);

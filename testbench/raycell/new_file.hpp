@@ -24,6 +24,7 @@ class NewFile {
     NewFile& operator=(const NewFile&) = delete;
 
     std::FILE* stream() { return file_; }
+    const std::string& path() const { return path_; }
 
     /// Gives the file its name. Whatever went wrong in writing comes to light here at the latest.
     void finish();

@@ -60,6 +60,17 @@ bool parse_cells(const std::string& word, CellRange& range) {
            parse_span(word.substr(comma + 1), range.y0, range.y1);
 }
 
+/// "FROM:TO", either side may be empty.
+bool parse_window(const std::string& word, CycleWindow& window) {
+    const auto colon = word.find(':');
+    if (colon == std::string::npos) return false;
+    window = CycleWindow();
+    const std::string from = word.substr(0, colon);
+    const std::string to = word.substr(colon + 1);
+    return (from.empty() || parse_number(from, window.from)) && (to.empty() || parse_number(to, window.to)) &&
+           window.from <= window.to;
+}
+
 std::string text_of(const CellRange& range) {
     const auto span = [](int from, int to) {
         return from == to ? std::to_string(from) : std::to_string(from) + ".." + std::to_string(to);
@@ -137,6 +148,25 @@ void OptionTable::rays(const std::string& name, std::vector<std::uint64_t>& targ
                             nlohmann::ordered_json list = nlohmann::ordered_json::array();
                             for (const std::uint64_t id : target) list.push_back(text_of_ray(id));
                             return list;
+                        }});
+}
+
+void OptionTable::window(const std::string& name, CycleWindow& target, const std::string& help) {
+    const auto check = [](const std::string& word) -> std::string {
+        CycleWindow window;
+        if (parse_window(word, window)) return "";
+        return "expected FROM:TO, cycles from 0 on, either may be left out, not '" + printable(word) + "'";
+    };
+    const auto set = [&target](const std::string& word) { parse_window(word, target); };
+    app_.add_option_function<std::string>("--" + name, set, help)
+        ->check(CLI::Validator(check, "FROM:TO"))
+        ->default_str(":")
+        ->take_last();
+    entries_.push_back({name, [&target] {
+                            const std::string from = target.from == 0 ? "" : std::to_string(target.from);
+                            const bool open = target.to == CycleWindow::open;
+                            return nlohmann::ordered_json(from + ":" +
+                                                          (open ? "" : std::to_string(target.to)));
                         }});
 }
 
@@ -278,6 +308,19 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     table.costs(m.costs);
     table.flag("truth", options.truth, "render the truth too and report the accuracy");
     table.flag("clip-truth", options.clip_truth, "clip the truth to the cube");
+}
+
+void add_probe_options(OptionTable& table, RenderOptions& options) {
+    ProbeOptions& p = options.probes;
+    table.cells("probe", p.cells,
+                "waveforms of these cells: PREFIX.vcd, PREFIX.gtkw; may come several times");
+    table.window("window", p.window, "cycles of the run that --probe shows, both ends included");
+    table.flag("vcd-on-deadlock", p.on_deadlock,
+               "if the run deadlocks: waveforms of the knot's cells, by running once more");
+    table.number("vcd-last", p.last, std::int64_t(0), std::int64_t(1) << 62,
+                 "cycles before the deadlock formed from which on --vcd-on-deadlock shows it");
+    table.number("vcd-limit", p.limit_mb, std::int64_t(1), std::int64_t(1) << 40,
+                 "size at which a dump ends, MB; the run goes on");
 }
 
 }  // namespace raycell

@@ -27,6 +27,22 @@ bool parse_number(const std::string& word, T& value) {
     return error == std::errc() && stop == word.data() + word.size() && !word.empty();
 }
 
+/// Cycles of a run from its start, both ends included; `open`: to its end.
+struct CycleWindow {
+    static constexpr std::uint64_t open = ~std::uint64_t(0);
+    std::uint64_t from = 0;
+    std::uint64_t to = open;
+};
+
+/// What is to be seen of a run as waveforms.
+struct ProbeOptions {
+    std::vector<CellRange> cells;
+    CycleWindow window;
+    bool on_deadlock = false;      ///< of a deadlock's knot alone
+    std::int64_t last = 2000;      ///< cycles before the deadlock formed
+    std::int64_t limit_mb = 1024;  ///< of a dump, 10^6 bytes
+};
+
 /// Registers options with CLI11 and remembers how to read their effective values back.
 class OptionTable {
   public:
@@ -51,6 +67,8 @@ class OptionTable {
     void shares(const std::string& name, double& p, double& q, const std::string& help);
     /// --NAME PIXEL/PART, may come several times: rays by their ids.
     void rays(const std::string& name, std::vector<std::uint64_t>& target, const std::string& help);
+    /// --NAME FROM:TO, cycles; either side may be empty.
+    void window(const std::string& name, CycleWindow& target, const std::string& help);
     /// --cost NAME=CYCLES, may come several times
     void costs(CostTable& table);
 
@@ -78,6 +96,7 @@ struct RenderOptions {
     bool clip_truth = false;
     std::vector<std::uint64_t> watch_rays;
     std::vector<CellRange> watch_pixels;
+    ProbeOptions probes;
 };
 
 /// The options that render and truth share: scene, view, size, ray tree.
@@ -88,6 +107,8 @@ void add_communication_options(OptionTable& table, MachineSettings& machine);
 void add_watch_options(OptionTable& table, RenderOptions& options);
 /// The rest of render's.
 void add_machine_options(OptionTable& table, RenderOptions& options);
+/// Waveforms of cells.
+void add_probe_options(OptionTable& table, RenderOptions& options);
 
 template <typename T>
 void OptionTable::number(const std::string& name, T& target, T least, T most, const std::string& help) {

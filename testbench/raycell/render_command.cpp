@@ -14,10 +14,12 @@
 #include "testbench/raycell/cells_csv.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/deadlock_dump.hpp"
 #include "testbench/raycell/knot_report.hpp"
 #include "testbench/raycell/machine_run.hpp"
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/picture_file.hpp"
+#include "testbench/raycell/probe_run.hpp"
 #include "testbench/raycell/ray_watch.hpp"
 #include "testbench/raycell/report_json.hpp"
 #include "testbench/raycell/scene_input.hpp"
@@ -50,6 +52,8 @@ struct Run {
     double wall_build = 0;
     std::uint64_t bytes_per_cell = 0;
     std::string cells_csv;
+    std::unique_ptr<ProbeRun> probes;  ///< null: none
+    DeadlockedCells deadlocked;        ///< with --vcd-on-deadlock
 };
 
 Run run_timed(const RenderOptions& options, const CellScene& scene, const ExteriorTracer* tracer) {
@@ -68,11 +72,16 @@ Run run_timed(const RenderOptions& options, const CellScene& scene, const Exteri
     const std::unique_ptr<RayWatch> watch = watch_of(options, std::cout);
     if (watch) observers.add(*watch);
     if (!observers.empty()) machine.environment().observer = &observers;
+    if (!options.probes.cells.empty()) run.probes = std::make_unique<ProbeRun>(options, machine);
     const bool progress = shows_progress(options) && !watch;
     run.result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
     if (watch) watch->finish(machine.environment().scheduler.now());
     machine.environment().observer = nullptr;
+    if (run.probes) run.probes->finish();
+    if (options.probes.on_deadlock && run.result.verdict == Verdict::deadlock) {
+        run.deadlocked = deadlocked_cells(run.result, machine);
+    }
     run.cells_csv = cells_csv(machine, run.result);
     return run;
 }
@@ -140,12 +149,18 @@ void summarise(const RenderOptions& options, const Json& json) {
                   << json["accuracy"]["wrong_hit_percent"].get<double>() << " % of the pixels\n";
     }
     std::cout << "picture: " << options.prefix << ".png\n";
+    if (json["verdict"] == "deadlock" ? options.probes.on_deadlock || !options.probes.cells.empty()
+                                      : !options.probes.cells.empty()) {
+        std::cout << "waveforms: " << options.prefix << ".vcd, to be opened with " << options.prefix
+                  << ".gtkw\n";
+    }
 }
 
 int run(const RenderOptions& options, const OptionTable& table) {
     check_output(options.prefix);
     check_memory(options);
     watch_of(options, std::cout);  // refuses what can't be watched before anything is done
+    check_probes(options);
     const auto start = Clock::now();
     const CellScene scene = read_and_place(options);
     for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
@@ -189,6 +204,10 @@ int run(const RenderOptions& options, const OptionTable& table) {
     }
     outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(config)); });
     outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
+    if (done.probes) done.probes->write(outputs);
+    if (!done.deadlocked.cells.empty()) {
+        dump_deadlock(options, config, done.deadlocked, result.schedule_hash, outputs);
+    }
     outputs.keep();
     explain(result);
     if (!options.quiet) summarise(options, json);
@@ -206,6 +225,7 @@ Command add_render_command(CLI::App& program) {
     add_scene_options(*table, *options);
     add_machine_options(*table, *options);
     add_watch_options(*table, *options);
+    add_probe_options(*table, *options);
     return {app, [options, table] { return run(*options, *table); }};
 }
 

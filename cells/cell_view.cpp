@@ -1,0 +1,127 @@
+// What a cell tells to those who watch. Causes are what the cell itself came upon when it last looked: the
+// order of the checks is that of move_ray(), accept_hit() and send_answer().
+#include "cells/cell_view.hpp"
+
+#include <algorithm>
+
+#include "cells/cell.hpp"
+
+namespace raycell {
+
+HeadStall Cell::stall_of_answer(const Answer& answer, Cycle now) const {
+    if (local(answer)) return store_port_ == now ? HeadStall::store_port : HeadStall::none;
+    switch (out_[std::size_t(route(answer))]->room(env_.classes.answer)) {
+        case LinkOut::Room::full:
+            return HeadStall::answer_full;
+        case LinkOut::Room::wires_busy:
+            return HeadStall::answer_wires;
+        case LinkOut::Room::free:
+            break;
+    }
+    return HeadStall::none;
+}
+
+namespace {
+
+HeadStall stall_of_output(LinkOut::Room room) {
+    return room == LinkOut::Room::full         ? HeadStall::output_full
+           : room == LinkOut::Room::wires_busy ? HeadStall::wires_busy
+                                               : HeadStall::none;
+}
+
+}  // namespace
+
+HeadStall Cell::stall_of(const RayPacket& packet, Cycle now) const {
+    if (packet.stage == RayPacket::Stage::in_test) return HeadStall::none;
+    if (packet.stage == RayPacket::Stage::untested) return HeadStall::traversal_unit;
+    const Ray& ray = packet.ray;
+    // Only where the answer goes matters here.
+    const auto answer = [&] { return stall_of_answer(answer_to(ray, Answer::Kind::intensity), now); };
+    if (packet.visit.event == Visit::Event::forward) {
+        const Side side = packet.visit.crossing.side;
+        const int x = x_ + step_x(side);
+        const int y = y_ + step_y(side);
+        const bool leaves = x < 0 || x >= env_.width() || y < 0 || y >= env_.height();
+        const Face face = ray.outside ? face_of_depth(ray) : face_of(side);
+        if (leaves && beyond_face(env_.context, face) == Beyond::nothing) return answer();
+        return stall_of_output(out_[std::size_t(side)]->room(env_.classes.ray(ray)));
+    }
+    if (packet.visit.event != Visit::Event::hit || is_shadow(ray.kind)) return answer();
+    if (!may_wait(env_.context, ray, store_.voxels[packet.visit.hit.voxel].object)) {
+        return shading_.job != Shading::Job::idle || slot_complete() ? HeadStall::shading_unit
+                                                                     : HeadStall::none;
+    }
+    // Slots are only taken through the port: a ray that the port held back had a slot, if there is one now.
+    if (!ray_store_.has_room(ray.generation)) {
+        return env_.machine.recovery == Recovery::none ? HeadStall::no_slot : answer();
+    }
+    return store_port_ == now ? HeadStall::store_port : HeadStall::none;
+}
+
+HeadStall Cell::stall_of(const LinkIn& in, int index, Cycle now) const {
+    const Message head = in.front(index);
+    switch (head.kind) {
+        case Message::Kind::ray:
+            return stall_of(*head.ray, now);
+        case Message::Kind::answer:
+            if (now < in.arrival(index) + env_.costs().route_return) return HeadStall::none;  // being routed
+            return stall_of_answer(*head.answer, now);
+        case Message::Kind::load:
+            if (loading_unit(now).state != UnitView::State::blocked) return HeadStall::none;
+            return stall_of_output(out_[std::size_t(Side::east)]->room(0));
+        case Message::Kind::none:
+            break;
+    }
+    return HeadStall::none;
+}
+
+HeadStall Cell::stall_of(const Slot& slot, Cycle now) const {
+    if (slot.child) return stall_of(*slot.child, now);
+    if (slot.state != Slot::State::to_answer) return HeadStall::none;
+    return stall_of_answer(answer_to(slot.packet->ray, Answer::Kind::intensity), now);
+}
+
+UnitView Cell::traversal_unit() const {
+    const RayPacket* packet = traversal_.packet;
+    if (!packet) return {};
+    const bool compares = !packet->ray.outside && packet->visit.comparisons.runs > 0;
+    return {UnitView::State::busy, compares ? UnitView::Operation::compare : UnitView::Operation::walk,
+            packet->ray.id};
+}
+
+UnitView Cell::shading_unit() const {
+    using Operation = UnitView::Operation;
+    switch (shading_.job) {
+        case Shading::Job::idle:
+            break;
+        case Shading::Job::set_up:
+        case Shading::Job::shade:
+            return {UnitView::State::busy,
+                    shading_.job == Shading::Job::shade ? Operation::shade : Operation::set_up,
+                    ray_store_[shading_.slot].packet->ray.id};
+        case Shading::Job::direct:
+            return {UnitView::State::busy, Operation::direct, shading_.packet->ray.id};
+        case Shading::Job::direct_answer:
+            return {UnitView::State::blocked, Operation::direct, shading_.packet->ray.id};
+    }
+    return {};
+}
+
+UnitView Cell::loading_unit(Cycle now) const {
+    if (!load_item_) return {};
+    const bool makes_voxel = load_item_->kind == LoadItem::Kind::span && load_item_->span.x == x_;
+    return {now < load_done_ ? UnitView::State::busy : UnitView::State::blocked,
+            makes_voxel ? UnitView::Operation::make_voxel : UnitView::Operation::pass_on, UnitView::no_ray};
+}
+
+Cycle Cell::oldest_arrival() const {
+    Cycle oldest = never;
+    for (const LinkIn* in : in_) {
+        for (int index = 0; in && index < env_.classes.count; ++index) {
+            if (in->front(index).kind != Message::Kind::none) oldest = std::min(oldest, in->arrival(index));
+        }
+    }
+    return oldest;
+}
+
+}  // namespace raycell

@@ -1,0 +1,32 @@
+// render's --probe: the probes of one run, and the files that they write.
+#pragma once
+
+#include <memory>
+
+#include "cells/probe.hpp"
+#include "pipeline/machine.hpp"
+#include "testbench/raycell/new_file.hpp"
+#include "testbench/raycell/options.hpp"
+
+namespace raycell {
+
+/// Throws UsageError for probes outside the array, without a timed engine, or that contradict each other.
+void check_probes(const RenderOptions& options);
+
+class ProbeRun {
+  public:
+    /// Begins PREFIX.vcd under a name of its own and puts the probes on the machine. Both must outlive it.
+    ProbeRun(const RenderOptions& options, Machine& machine);
+    /// The run is over.
+    void finish();
+    /// Gives PREFIX.vcd its name, and writes PREFIX.gtkw.
+    void write(OutputSet& outputs);
+
+  private:
+    Machine& machine_;
+    std::string name_;
+    NewFile file_;
+    Probe probe_;
+};
+
+}  // namespace raycell
