@@ -83,6 +83,8 @@ class Cell {
     void remove_from(std::size_t place);
     bool move_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool forward(RayPacket& packet, std::size_t place, Cycle now);
+    /// What a ray does that does not go on to a neighbour.
+    bool finish_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
     bool end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
     bool send_answer(const Answer& answer, Cycle now);
