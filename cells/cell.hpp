@@ -107,6 +107,8 @@ class Cell {
     void try_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool move_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool forward(RayPacket& packet, std::size_t place, Cycle now);
+    /// What a ray does that does not go on to a neighbour.
+    bool finish_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
     bool end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
     bool send_answer(const Answer& answer, Cycle now);

@@ -35,7 +35,8 @@ Cycle Activity::cycles_of(std::size_t index) const {
     return std::min(end, from + bucket_cycles) - from;
 }
 
-void ActivityRecorder::begin(Cycle start, const Counters& counters) {
+void ActivityRecorder::begin(Cycle start, const Counters& counters, bool levels) {
+    levels_ = levels;
     activity_ = Activity();
     activity_.start = start;
     activity_.end = start;
@@ -68,7 +69,7 @@ void ActivityRecorder::close_bucket(const Counters& counters) {
         bucket_end_ = activity_.start + Cycle(buckets.size() + 1) * activity_.bucket_cycles;
         return;
     }
-    extend(bucket_end_, counters);
+    if (levels_) extend(bucket_end_, counters);
     take_events(counters);
     buckets.push_back(current_);
     current_ = Activity::Bucket();

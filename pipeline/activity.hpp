@@ -40,12 +40,12 @@ class ActivityRecorder {
   public:
     static constexpr std::size_t most_buckets = 200;
 
-    /// From cycle `start` on.
-    void begin(Cycle start, const Counters& counters);
+    /// From cycle `start` on. Without `levels`, only events are counted: no rays are on their way.
+    void begin(Cycle start, const Counters& counters, bool levels);
     /// To be called before each cycle `now` that is run: until then all stands as the cycle before left it.
     void observe(Cycle now, const Counters& counters) {
         while (now >= bucket_end_) close_bucket(counters);
-        extend(now, counters);
+        if (levels_) extend(now, counters);
     }
     /// `end`: the cycle after the last one.
     void finish(Cycle end, const Counters& counters);
@@ -66,7 +66,8 @@ class ActivityRecorder {
     Activity activity_;
     Activity::Bucket current_;
     Activity::Bucket before_;  ///< events before the current bucket
-    Cycle seen_ = 0;           ///< levels are summed up to this cycle
+    bool levels_ = true;
+    Cycle seen_ = 0;  ///< levels are summed up to this cycle
     Cycle bucket_end_ = 0;
 };
 

@@ -164,11 +164,11 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     progress_ = std::move(progress);
     RunResult result;
     const PictureSettings& settings = environment_.context.settings;
-    activity_.begin(scheduler_.now(), environment_.counters);
+    activity_.begin(scheduler_.now(), environment_.counters, false);
     run_phase(Phase::load, result);
     activity_.finish(scheduler_.now() + 1, environment_.counters);
     result.load_activity = activity_.activity();
-    activity_.begin(scheduler_.now() + 1, environment_.counters);
+    activity_.begin(scheduler_.now() + 1, environment_.counters, true);
     // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
     result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
     for (const auto& link : array_.links()) link->reset_statistics();
