@@ -120,6 +120,15 @@ fs::path Workshop::write(const std::string& name, const std::string& text) const
     return path_ / name;
 }
 
+std::vector<std::string> Workshop::usual_results() const {
+    std::vector<std::string> names = results();
+    const auto special = [](const std::string& name) {
+        return contains(name, ".knot.svg") || contains(name, ".ledger.csv") || contains(name, ".waits.json");
+    };
+    names.erase(std::remove_if(names.begin(), names.end(), special), names.end());
+    return names;
+}
+
 std::vector<std::string> Workshop::results() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(path_ / "results"))

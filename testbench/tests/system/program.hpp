@@ -58,6 +58,8 @@ class Workshop {
     fs::path result(const std::string& name) const { return path_ / "results" / name; }
     /// Names of the files in results/, sorted.
     std::vector<std::string> results() const;
+    /// The same without what is there only where something waits, locked or was destroyed.
+    std::vector<std::string> usual_results() const;
 
   private:
     fs::path path_;
