@@ -2,6 +2,7 @@
 // has made the untimed picture, bit for bit. What cells/deadlock.md claims to end must end.
 #include "../truth/hand_made.hpp"
 #include "elaboration.hpp"
+#include "knot_check.hpp"
 
 namespace raycell {
 namespace {
@@ -105,6 +106,7 @@ void draw_machine(Drawn& drawn, property::Random& random) {
         if (random.chance(0.2)) m.costs.*member = std::uint32_t(random.whole(1, 40));
     }
     m.costs.backoff = std::uint32_t(random.whole(1, 16));  // short: a livelock is waited for
+    if (random.chance(0.3)) m.stall = random.uniform(0.01, 0.6);
     // What else only time depends on belongs here.
 }
 
@@ -122,9 +124,9 @@ Drawn draw(std::uint64_t seed) {
                   std::to_string(m.ray_store) + " (bound " + std::to_string(drawn.least) + "), buffers " +
                   std::to_string(m.buffer_depth) + ", " + networks[int(m.networks)] + ", " +
                   slots[int(m.slots)] + (m.recovery == Recovery::none ? "none" : "postpone") + ", links " +
-                  std::to_string(m.link_bits) + ", shadows " + std::to_string(int(s.shadows)) +
-                  ", exterior " + std::to_string(int(s.exterior)) + ", generations " +
-                  std::to_string(s.max_depth);
+                  std::to_string(m.link_bits) + ", shadows " + std::to_string(int(s.shadows)) + ", stall " +
+                  std::to_string(m.stall) + ", exterior " + std::to_string(int(s.exterior)) +
+                  ", generations " + std::to_string(s.max_depth);
     return drawn;
 }
 
@@ -174,6 +176,18 @@ void expect_nothing_can_move(Machine& machine) {
     scheduler.set_now(stopped);
 }
 
+/// Knots that a search over the graph accepts; everything else waits for one of them.
+void expect_knots(const WaitGraph& graph) {
+    std::vector<knot_check::Node> nodes;
+    for (const WaitGraph::Node& n : graph.nodes()) {
+        nodes.push_back({n.moves, n.all, {n.waits_for.begin(), n.waits_for.end()}});
+    }
+    EXPECT_TRUE(graph.deadlocked());
+    for (const auto& knot : graph.knots()) {
+        EXPECT_EQ(knot_check::objection(nodes, {knot.begin(), knot.end()}), "");
+    }
+}
+
 void expect_conserved(const Environment& environment, bool completed) {
     const Counters& c = environment.counters;
     const std::uint64_t open = c.rays_sent - c.rays_answered - c.rays_silent - c.rays_destroyed;
@@ -203,10 +217,12 @@ void expect_true_verdict(const Drawn& drawn, Machine& machine, const RunResult& 
             EXPECT_FALSE(acyclic(drawn) && m.recovery == Recovery::postpone)
                 << "something can always move where no buffer waits for a slot";
             EXPECT_FALSE(result.report.empty());
+            expect_knots(result.waits);
             expect_nothing_can_move(machine);
             break;
         case Verdict::livelock:
             EXPECT_EQ(m.recovery, Recovery::postpone);
+            EXPECT_FALSE(result.waits.deadlocked());
             EXPECT_GT(result.counters.rays_destroyed, 0u);
             EXPECT_FALSE(result.report.empty());
             break;
