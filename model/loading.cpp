@@ -23,7 +23,8 @@ void hold(Polygon& polygon, const Arithmetic& arithmetic) {
         v = arithmetic.hold(word, v);
         centre += v / double(polygon.vertices.size());
     }
-    polygon.slack = polygon.slack * 2 + 4 * word.step();
+    // Rounded upwards: half a last bit more than what it may be, then to the nearest.
+    polygon.slack = arithmetic.hold(word, polygon.slack * 2 + 4.5 * word.step());
     polygon.plane = hold_plane(polygon.plane, polygon.drop, centre, word, word);
     const dvec2 middle = project(centre, polygon.drop);
     if (!fits(word, polygon.normal)) polygon.normal = {polygon.normal.at(middle), {0, 0, 0}, {0, 0, 0}};
