@@ -40,7 +40,7 @@ void Cell::begin_phase() {
 
 Cycle Cell::step(Cycle now) {
     next_ = never;
-    moved_ = blocked_ = false;
+    moved_ = blocked_ = answer_moved_ = false;
     if (env_.phase == Phase::load) {
         step_load(now);
         return next_;
@@ -245,6 +245,7 @@ void Cell::move_answer(LinkIn& in, Wait& wait, Cycle now) {
         out->send(index, message, env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
         record_send(now, way, index, answer->id);
     }
+    answer_moved_ = true;
     settle(wait, id, now);
     wait.cause = Stall::none;
     in.pop(index);

@@ -192,7 +192,8 @@ class Cell {
     Traversal traversal_;
     Shading shading_;
     std::size_t next_test_ = 0;   ///< round robin over places
-    bool replies_first_ = false;  ///< this cycle replies go before passing answers: the last one they lost
+    bool replies_first_ = false;  ///< replies go before answers that came in, which went last
+    bool answer_moved_ = false;   ///< this cycle: an answer left an input
     Cycle store_port_ = never;    ///< cycle in which the ray store's one write port was used
     Cycle load_done_ = 0;
     LoadItem* load_item_ = nullptr;
@@ -204,10 +205,11 @@ class Cell {
     /// Cycles that a message which waits to move is passed over by others; after that it goes before all of
     /// them, oldest first. Without it a stream of notices can starve what would end it (deadlock.md, step 5).
     static constexpr Cycle patience = 65536;
-    Cycle look_for_overdue_ = patience;  ///< cycle from which on to look for such messages
-    std::uint32_t answers_moved_ = 0;    ///< bit per side whose buffer of answers was read in this cycle
-    std::uint64_t precast_next_ = 0;     ///< voxel · sources + source
-    std::vector<std::uint64_t> asked_;   ///< memo: per voxel, sources already asked for
+    static constexpr Cycle epoch = patience / 8;  ///< ages are counted in these
+    Cycle look_for_overdue_ = patience;           ///< cycle from which on to look for such messages
+    std::uint32_t answers_moved_ = 0;   ///< bit per side whose buffer of answers was read in this cycle
+    std::uint64_t precast_next_ = 0;    ///< voxel · sources + source
+    std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
     std::uint64_t hash_ = 0;
     CellStatistics statistics_;
     Stall cause_ = Stall::none;                    ///< why the last attempt to move something failed

@@ -6,15 +6,17 @@
 
 namespace raycell {
 
-/// Moves what has waited for more than `patience` cycles, oldest first, whatever it is; the usual order
-/// follows for the others. Looks for it now and then, and in every step while there is any.
+/// Moves what had waited for more than `patience` cycles when the epoch began, oldest first, whatever it is;
+/// the usual order follows for the others. Looks for it once an epoch, and in every step while there is any:
+/// so it does not matter how often the cell runs.
 void Cell::move_overdue(Cycle now) {
     answers_moved_ = 0;
     if (now < look_for_overdue_) return;
+    const Cycle began = now / epoch * epoch;
     enum Kind { answer, reply, ray };
     std::vector<std::tuple<Cycle, Kind, std::size_t>> overdue;
     const auto add = [&](Cycle since, Kind kind, std::size_t index) {
-        if (since < now && now - since > patience) overdue.emplace_back(since, kind, index);
+        if (since < began && began - since > patience) overdue.emplace_back(since, kind, index);
     };
     const int index = env_.classes.answer;
     for (int side = 0; side < side_count; ++side) {
@@ -32,7 +34,7 @@ void Cell::move_overdue(Cycle now) {
         const RayPacket* packet = packet_at(place);
         if (packet && packet->stage == RayPacket::Stage::decided) add(packet->decided, ray, place);
     }
-    look_for_overdue_ = overdue.empty() ? now + patience / 8 : now + 1;
+    look_for_overdue_ = overdue.empty() ? began + epoch : now + 1;
     std::sort(overdue.begin(), overdue.end());
     for (const auto& [since, kind, at] : overdue) {
         if (kind == answer) {

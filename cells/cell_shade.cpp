@@ -297,6 +297,7 @@ void Cell::finish_shading(Cycle now) {
 
 void Cell::move_replies(Cycle now) {
     bool waits = false;
+    bool went = false;
     if (shading_.job == Shading::Job::direct_answer) {
         Answer answer = answer_to(shading_.packet->ray, Answer::Kind::intensity);
         answer.colour = shading_.result;
@@ -307,6 +308,7 @@ void Cell::move_replies(Cycle now) {
             ++env_.counters.rays_answered;
             env_.pools.rays.give_back(packet);
             shading_.job = Shading::Job::idle;
+            went = true;
         } else {
             stall(direct_wait_, cause_, answer.id, now);
             waits = true;
@@ -326,9 +328,15 @@ void Cell::move_replies(Cycle now) {
         settle(wait, answer.id, now);
         ++env_.counters.rays_answered;
         release_slot(i, now);
+        went = true;
     }
     if (waits) blocked_ = true;
-    replies_first_ = waits && !replies_first_;
+    // By what has moved, not by how often the cell has run: a cell that runs in every cycle does the same.
+    if (went) {
+        replies_first_ = false;
+    } else if (waits && answer_moved_) {
+        replies_first_ = true;
+    }
 }
 
 void Cell::release_slot(std::uint32_t index, Cycle now) {
