@@ -12,6 +12,7 @@ namespace raycell {
 
 class Cell;
 class Link;
+enum class Phase : std::uint8_t;
 
 /// What a cell does. The first seven make up the schedule's hash; their numbers must not change.
 enum class CellEvent : std::uint32_t {
@@ -40,6 +41,10 @@ class CellObserver {
     /// A ray, or the answer to it, goes on after it has waited `cycles` in a cell.
     virtual void stalled(const Cell& /*cell*/, Cycle /*now*/, std::uint64_t /*ray*/, Stall /*cause*/,
                          Cycle /*cycles*/) {}
+    /// The whole array begins a phase; `first` is its first cycle.
+    virtual void phase_begins(Phase /*phase*/, Cycle /*first*/) {}
+    /// From this cycle on new rays are held back, or are not any more (Environment::draining).
+    virtual void draining(bool /*on*/, Cycle /*now*/) {}
     /// An exterior processor's answer starts over the border into cell (x, y).
     virtual void exterior_answered(int /*x*/, int /*y*/, Cycle /*now*/, const Answer& /*answer*/) {}
 };

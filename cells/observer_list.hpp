@@ -24,6 +24,12 @@ class CellObserverList : public CellObserver {
     void stalled(const Cell& cell, Cycle now, std::uint64_t ray, Stall cause, Cycle cycles) override {
         for (CellObserver* member : members_) member->stalled(cell, now, ray, cause, cycles);
     }
+    void phase_begins(Phase phase, Cycle first) override {
+        for (CellObserver* member : members_) member->phase_begins(phase, first);
+    }
+    void draining(bool on, Cycle now) override {
+        for (CellObserver* member : members_) member->draining(on, now);
+    }
     void exterior_answered(int x, int y, Cycle now, const Answer& answer) override {
         for (CellObserver* member : members_) member->exterior_answered(x, y, now, answer);
     }

@@ -108,11 +108,13 @@ bool Machine::watch(void* self, Cycle now) {
     if (env.phase == Phase::trace && env.counters.rays_destroyed > 0 &&
         now - std::max(env.counters.last_progress, env.phase_start) > machine.livelock_window()) {
         // Nothing comes home any more. With no new rays on their way, all that is not locked comes to rest.
+        if (!env.draining && env.observer) env.observer->draining(true, now);
         env.draining = true;
         if (machine.drain_start_ == never) machine.drain_start_ = now;
         if (now - machine.drain_start_ > machine.livelock_window()) return false;
     } else if (env.draining) {  // something did come home: go on
         env.draining = false;
+        if (env.observer) env.observer->draining(false, now);
         machine.drain_start_ = never;
         for (const auto& cell : machine.array_.cells()) env.scheduler.wake(*cell, now + 1);
     }
@@ -135,6 +137,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     if (phase == Phase::load) {
         geometry_.start();
     } else {
+        if (environment_.observer) environment_.observer->phase_begins(phase, scheduler_.now() + 1);
         array_.begin_phase();
     }
     // No free-running clock: this returns when nobody has anything to do any more.

@@ -13,8 +13,8 @@ namespace {
 
 class Reader {
   public:
-    Reader(const std::string& path, const CLI::App& app, const CLI::App* other)
-        : path_(path), app_(app), other_(other) {}
+    Reader(const std::string& path, std::string text, const CLI::App& app, const CLI::App* other)
+        : path_(path), text_(std::move(text)), app_(app), other_(other) {}
 
     std::vector<std::string> arguments() {
         for (const auto& [key, node] : parse()) option(std::string(key.str()), node);
@@ -23,15 +23,8 @@ class Reader {
 
   private:
     toml::table parse() const {
-        std::error_code ignored;
-        std::ifstream file(path_, std::ios::binary);
-        if (!std::filesystem::is_regular_file(path_, ignored) || !file) {
-            throw UsageError(path_ + ": can't be read; expected a configuration file");
-        }
-        std::ostringstream text;
-        text << file.rdbuf();
         try {
-            return toml::parse(text.str());
+            return toml::parse(text_);
         } catch (const toml::parse_error& error) {
             fail(error.source(), printable(error.description(), 120) + "; expected TOML");
         }
@@ -84,6 +77,7 @@ class Reader {
     }
 
     std::string path_;
+    std::string text_;
     const CLI::App& app_;
     const CLI::App* other_;
     std::vector<std::string> arguments_;
@@ -105,7 +99,19 @@ std::string configuration_named(const std::vector<std::string>& words) {
 
 std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app,
                                              const CLI::App* other) {
-    return Reader(path, app, other).arguments();
+    std::error_code ignored;
+    std::ifstream file(path, std::ios::binary);
+    if (!std::filesystem::is_regular_file(path, ignored) || !file) {
+        throw UsageError(path + ": can't be read; expected a configuration file");
+    }
+    std::ostringstream text;
+    text << file.rdbuf();
+    return arguments_from_text(text.str(), path, app, other);
+}
+
+std::vector<std::string> arguments_from_text(const std::string& text, const std::string& name,
+                                             const CLI::App& app, const CLI::App* other) {
+    return Reader(name, text, app, other).arguments();
 }
 
 std::string to_toml(const nlohmann::ordered_json& values) {

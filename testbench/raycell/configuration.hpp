@@ -18,6 +18,10 @@ std::string configuration_named(const std::vector<std::string>& words);
 std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app,
                                              const CLI::App* other = nullptr);
 
+/// The same of a text; `name` is for messages.
+std::vector<std::string> arguments_from_text(const std::string& text, const std::string& name,
+                                             const CLI::App& app, const CLI::App* other = nullptr);
+
 /// The effective options as a configuration file that reproduces the run.
 std::string to_toml(const nlohmann::ordered_json& values);
 

@@ -321,6 +321,9 @@ void add_probe_options(OptionTable& table, RenderOptions& options) {
                  "cycles before the deadlock formed from which on --vcd-on-deadlock shows it");
     table.number("vcd-limit", p.limit_mb, std::int64_t(1), std::int64_t(1) << 40,
                  "size at which a dump ends, MB; the run goes on");
+    table.cells("golden", options.golden,
+                "messages into and out of these cells, for cell_tb and the test of a cell of your own: "
+                "PREFIX.golden_X_Y.txt; may come several times");
 }
 
 }  // namespace raycell

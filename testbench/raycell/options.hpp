@@ -97,6 +97,7 @@ struct RenderOptions {
     std::vector<std::uint64_t> watch_rays;
     std::vector<CellRange> watch_pixels;
     ProbeOptions probes;
+    std::vector<CellRange> golden;  ///< cells whose messages are written
 };
 
 /// The options that render and truth share: scene, view, size, ray tree.
@@ -107,7 +108,7 @@ void add_communication_options(OptionTable& table, MachineSettings& machine);
 void add_watch_options(OptionTable& table, RenderOptions& options);
 /// The rest of render's.
 void add_machine_options(OptionTable& table, RenderOptions& options);
-/// Waveforms of cells.
+/// Waveforms and golden vectors of cells.
 void add_probe_options(OptionTable& table, RenderOptions& options);
 
 template <typename T>

@@ -1,25 +1,17 @@
 #include "testbench/raycell/probe_run.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
+#include "testbench/raycell/cell_ranges.hpp"
 #include "testbench/raycell/scene_input.hpp"
 
 namespace raycell {
 namespace {
 
-/// The cells of all ranges, row by row, each once.
-std::vector<const CellModule*> cells_of(const std::vector<CellRange>& ranges, Machine& machine) {
-    std::vector<const CellModule*> cells;
-    for (const auto& module : machine.array().cells()) {
-        const Cell& cell = module->cell();
-        if (std::any_of(ranges.begin(), ranges.end(),
-                        [&](const CellRange& range) { return range.contains(cell.x(), cell.y()); })) {
-            cells.push_back(module.get());
-        }
-    }
-    return cells;
+std::vector<const CellModule*> watched(const std::vector<CellRange>& ranges, Machine& machine) {
+    const std::vector<CellModule*> cells = cells_in(ranges, machine.array());
+    return {cells.begin(), cells.end()};
 }
 
 ProbeSettings settings_of(const ProbeOptions& options) {
@@ -41,21 +33,14 @@ void check_probes(const RenderOptions& options) {
         throw UsageError("--vcd-on-deadlock: it finds its cells itself; expected no --probe beside it");
     }
     if (p.cells.empty() && !whole_run) throw UsageError("--window: expected --probe beside it");
-    for (const CellRange& range : p.cells) {
-        const int width = options.picture.width;
-        const int height = options.picture.height;
-        if (range.x1 < width && range.y1 < height) continue;
-        throw UsageError("--probe: cell (" + std::to_string(range.x1) + ", " + std::to_string(range.y1) +
-                         ") lies outside the array; expected x from 0 to " + std::to_string(width - 1) +
-                         ", y from 0 to " + std::to_string(height - 1));
-    }
+    check_inside("--probe", p.cells, options.picture);
 }
 
 ProbeRun::ProbeRun(const RenderOptions& options, Machine& machine)
     : machine_(machine),
       name_(file_name(options.prefix)),
       file_(options.prefix + ".vcd"),
-      probe_(cells_of(options.probes.cells, machine), machine.environment(), file_.stream(),
+      probe_(watched(options.probes.cells, machine), machine.environment(), file_.stream(),
              settings_of(options.probes),
              [path = options.prefix + ".vcd", progress = shows_progress(options)](const std::string& text) {
                  if (progress) end_progress();

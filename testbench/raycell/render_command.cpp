@@ -15,6 +15,7 @@
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
 #include "testbench/raycell/deadlock_dump.hpp"
+#include "testbench/raycell/golden_run.hpp"
 #include "testbench/raycell/knot_report.hpp"
 #include "testbench/raycell/machine_run.hpp"
 #include "testbench/raycell/new_file.hpp"
@@ -52,11 +53,13 @@ struct Run {
     double wall_build = 0;
     std::uint64_t bytes_per_cell = 0;
     std::string cells_csv;
-    std::unique_ptr<ProbeRun> probes;  ///< null: none
-    DeadlockedCells deadlocked;        ///< with --vcd-on-deadlock
+    std::unique_ptr<ProbeRun> probes;   ///< null: none
+    std::unique_ptr<GoldenRun> golden;  ///< null: none
+    DeadlockedCells deadlocked;         ///< with --vcd-on-deadlock
 };
 
-Run run_timed(const RenderOptions& options, const CellScene& scene, const ExteriorTracer* tracer) {
+Run run_timed(const RenderOptions& options, const std::string& configuration, const CellScene& scene,
+              const ExteriorTracer* tracer) {
     Run run;
     const auto start = Clock::now();
     const std::uint64_t before = memory_bytes();
@@ -71,6 +74,10 @@ Run run_timed(const RenderOptions& options, const CellScene& scene, const Exteri
     CellObserverList observers;
     const std::unique_ptr<RayWatch> watch = watch_of(options, std::cout);
     if (watch) observers.add(*watch);
+    if (!options.golden.empty()) {
+        run.golden = std::make_unique<GoldenRun>(options, configuration, machine);
+        observers.add(run.golden->observer());
+    }
     if (!observers.empty()) machine.environment().observer = &observers;
     if (!options.probes.cells.empty()) run.probes = std::make_unique<ProbeRun>(options, machine);
     const bool progress = shows_progress(options) && !watch;
@@ -79,6 +86,7 @@ Run run_timed(const RenderOptions& options, const CellScene& scene, const Exteri
     if (watch) watch->finish(machine.environment().scheduler.now());
     machine.environment().observer = nullptr;
     if (run.probes) run.probes->finish();
+    if (run.golden) run.golden->finish();
     if (options.probes.on_deadlock && run.result.verdict == Verdict::deadlock) {
         run.deadlocked = deadlocked_cells(run.result, machine);
     }
@@ -161,6 +169,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
     check_memory(options);
     watch_of(options, std::cout);  // refuses what can't be watched before anything is done
     check_probes(options);
+    check_golden(options);
     const auto start = Clock::now();
     const CellScene scene = read_and_place(options);
     for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
@@ -176,14 +185,14 @@ int run(const RenderOptions& options, const OptionTable& table) {
         tracer = std::make_unique<ClassicalExterior>(scene, *whole);
     }
     const double wall_placing = seconds_since(start);
-    Run done = options.engine == Engine::timed ? run_timed(options, scene, tracer.get())
+    const Json config = table.values();
+    Run done = options.engine == Engine::timed ? run_timed(options, to_toml(config), scene, tracer.get())
                                                : run_untimed(options, scene, tracer.get());
     done.wall_build += wall_placing;
 
     OutputSet outputs(options.prefix);
     const RunResult& result = done.result;
     Json json = report(result, scene, options.picture, options.machine);
-    Json config = table.values();
     if (options.truth) json["accuracy"] = render_truth(options, scene, result.picture, outputs);
     json["config"] = config;
     json["model"] = model_report(done);
@@ -205,6 +214,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
     outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(config)); });
     outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
     if (done.probes) done.probes->write(outputs);
+    if (done.golden) done.golden->write(outputs);
     if (!done.deadlocked.cells.empty()) {
         dump_deadlock(options, config, done.deadlocked, result.schedule_hash, outputs);
     }

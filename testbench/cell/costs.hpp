@@ -1,0 +1,88 @@
+// Cycles and rays that the scenarios have in common. Written out on purpose, not taken from the model:
+// docs/cell.md has the costs, docs/cell_tb.md the words.
+#pragma once
+
+#include "testbench/cell/script.hpp"
+
+namespace raycell::scripted {
+
+// Buffer classes of the network `half`.
+constexpr int east_bound = 0;
+constexpr int west_bound = 1;
+constexpr int answers = 2;
+
+// Cycles over links of 20 bits, of messages of 3x3 cells, M = 8, a cube 10 deep (4 + 20 bits of depth); an
+// address is home 4, slot 4, child 6.
+constexpr int ray_link = 13;       // 3 + 64 + 60 + 52 + 20 + 20 + 6 + 14 + 3 = 242 bits
+constexpr int shadow_link = 12;    // without the generation: 236 bits
+constexpr int intensity_link = 4;  // 3 + 60 + 14 = 77 bits
+constexpr int verdict_link = 1;    // 3 + 14 = 17 bits
+
+constexpr Cycle walk = 4;
+constexpr Cycle reciprocal = 4;
+constexpr Cycle root = 5;
+constexpr Cycle compare_run = 2;
+/// A voxel whose run meets the ray: the edges' test, where the ray meets the plane, two edges.
+constexpr Cycle compare = compare_run + 4 + reciprocal + 2 * 2;
+constexpr Cycle return_route = 1;
+constexpr Cycle set_up = 20 + 7 + root;  // point and interpolated normal
+constexpr Cycle reflect = 6 + root + 2 * reciprocal;
+constexpr Cycle shade = 6;
+constexpr Cycle load_voxel = 12;
+constexpr Cycle load_forward = 1;
+
+inline const dvec3 black{0, 0, 0};
+
+/// A ray that the cell (0, 1) sent, in its coordinates of the cell (1, 1).
+inline Ray ray_of(RayKind kind, const dvec3& position, const dvec3& direction) {
+    Ray ray;
+    ray.kind = kind;
+    ray.position = position;
+    set_direction(ray, direction, exact_arithmetic());
+    ray.fresh = false;
+    ray.home_x = 0;
+    ray.home_y = 1;
+    ray.slot = 2;
+    ray.generation = 1;
+    ray.id = std::uint64_t(3) << 32 | 7;
+    return ray;
+}
+
+inline Ray moved_to(Ray ray, const dvec3& position) {
+    ray.position = position;
+    return ray;
+}
+
+inline Answer answer_for(const Ray& ray, Answer::Kind kind, const dvec3& colour = dvec3(0)) {
+    Answer answer = answer_to(ray, kind);
+    answer.colour = colour;
+    return answer;
+}
+
+/// The trace begins in cycle 1 with nothing loaded: the cell's own ray is tested from 1 to 5, leaves through
+/// the back, where nothing is, and its answer is home at once.
+inline Script empty_cell(const std::string& name, const std::string& says) {
+    Script script(name, says);
+    script.trace(1).pixel(1 + walk, black);
+    return script;
+}
+
+constexpr Cycle walled_trace = 20;
+
+/// A cell with a mirror at x = 0.75 that faces west, from z = 2 to 8, so that it stands beside the cell's own
+/// ray. It is loaded in cycles 1 to 14, the trace begins in cycle 20.
+inline Script mirrored_cell(const std::string& name, const std::string& says) {
+    Script script(name, says);
+    Material mirror;
+    mirror.diffuse = 0;
+    mirror.specular = 1;
+    mirror.shine = 1e9;
+    script.setup().scene.objects.push_back(mirror);
+    script.in(1, Side::west, 1, span_of(script.setup(), 0, {1.75, 0, 2}, {0, 3, 0}, {0, 0, 6}, 1, 1))
+        .take(2 + load_voxel, Side::west, 0)
+        .trace(walled_trace)
+        .pixel(walled_trace + walk + compare, black);
+    return script;
+}
+
+}  // namespace raycell::scripted

@@ -1,0 +1,224 @@
+// cell_tb: one cell with drivers on its sides. Runs scripted scenarios, or golden vectors of a real run.
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <systemc>
+
+#include "cells/probe.hpp"
+#include "testbench/cell/scenarios.hpp"
+#include "testbench/golden/cell_bench.hpp"
+#include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/new_file.hpp"
+#include "testbench/raycell/options.hpp"
+
+namespace {
+
+using namespace raycell;
+
+/// SystemC prints its banner before sc_main(); standard error belongs to the run's own messages.
+const bool banner_off = [] {
+    setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
+    return true;
+}();
+
+constexpr int exit_differs = 2;
+constexpr const char* vcd_suffix = ".vcd";
+
+struct Options {
+    std::vector<std::string> names;
+    std::vector<std::string> replay;
+    std::string vcd;
+    std::string write;
+    bool list = false;
+    bool quiet = false;
+};
+
+/// The options of a recorded run, from the configuration in its head.
+RenderOptions recorded_options(const GoldenFile& file) {
+    RenderOptions options;
+    CLI::App app{"configuration"};
+    app.name("raycell render");
+    OptionTable table(app);
+    add_scene_options(table, options);
+    add_machine_options(table, options);
+    CLI::App other{"other"};
+    RenderOptions ignored;
+    OptionTable other_table(other);
+    add_watch_options(other_table, ignored);
+    add_probe_options(other_table, ignored);
+    std::vector<std::string> words =
+        arguments_from_text(file.configuration, file.name + ": config", app, &other);
+    std::reverse(words.begin(), words.end());
+    try {
+        app.parse(words);
+    } catch (const CLI::ParseError& error) {
+        throw UsageError(file.name + ": config: " + error.what());
+    }
+    return options;
+}
+
+Scenario scenario_of_file(const std::string& path) {
+    std::ifstream in(path);
+    if (!in)
+        throw UsageError(
+            path + ": can't be read; expected golden vectors, as 'raycell render --golden' writes them");
+    GoldenFile file = read_golden(in, path);
+    const RenderOptions options = recorded_options(file);
+    Scenario scenario;
+    scenario.name = path;
+    scenario.setup.picture = options.picture;
+    scenario.setup.machine = options.machine;
+    read_setup(file, scenario.setup);
+    scenario.events = std::move(file.events);
+    scenario.last = file.last;
+    return scenario;
+}
+
+std::vector<Scenario> chosen_scenarios(const Options& options) {
+    if (!options.replay.empty()) {
+        std::vector<Scenario> scenarios;
+        for (const std::string& path : options.replay) scenarios.push_back(scenario_of_file(path));
+        return scenarios;
+    }
+    std::vector<Scenario> all = all_scenarios();
+    if (options.names.empty()) return all;
+    std::vector<Scenario> scenarios;
+    for (const std::string& name : options.names) {
+        const auto found =
+            std::find_if(all.begin(), all.end(), [&](const Scenario& s) { return s.name == name; });
+        if (found == all.end()) throw UsageError("no scenario '" + printable(name) + "'; see --list");
+        scenarios.push_back(*found);
+    }
+    return scenarios;
+}
+
+/// Waveforms of a bench's cell, from its first cycle to its last.
+class Waveform {
+  public:
+    Waveform(const std::string& path, CellBench& bench)
+        : file_(path),
+          probe_({&bench.module()}, bench.environment(), file_.stream(), {},
+                 [path](const std::string& text) { std::cerr << path << ": warning: " << text << '\n'; }),
+          scheduler_(bench.environment().scheduler) {
+        scheduler_.set_sampler([this](Cycle now) { probe_.sample(now); });
+    }
+    void finish() {
+        scheduler_.sample();
+        scheduler_.set_sampler({});
+        probe_.finish(scheduler_.now());
+        file_.finish();
+        const std::string& path = file_.path();
+        const std::string prefix = path.substr(0, path.rfind('.'));
+        const std::string name = prefix.substr(prefix.rfind('/') + 1);  // npos + 1 is 0
+        write_text(prefix + ".gtkw", probe_.save_file(name));
+    }
+
+  private:
+    NewFile file_;
+    Probe probe_;
+    Scheduler& scheduler_;
+};
+
+/// A scenario as golden vectors: its setup, and what its cell really is told and does.
+void write_scenario(const Scenario& scenario, const std::string& path) {
+    RenderOptions options;
+    CLI::App app{"configuration"};
+    OptionTable table(app);
+    add_scene_options(table, options);
+    add_machine_options(table, options);
+    options.picture = scenario.setup.picture;
+    options.machine = scenario.setup.machine;
+    const Context context(scenario.setup.scene, scenario.setup.picture);
+    std::string text = setup_text(scenario.setup, context, to_toml(table.values()));
+    for (const GoldenEvent& event : scenario.events) text += text_of(event) + "\n";
+    write_text(path, text + std::to_string(scenario.last) + " end\n");
+}
+
+void check(const Options& options, std::size_t scenarios) {
+    if (!options.replay.empty() && (!options.names.empty() || options.list || !options.write.empty()))
+        throw UsageError("--replay: expected no scenario, --list or --write beside it");
+    if (scenarios != 1 && !options.vcd.empty())
+        throw UsageError("--vcd: it shows one cell; expected one scenario or one file to replay");
+    if (scenarios != 1 && !options.write.empty()) throw UsageError("--write: expected one scenario");
+    const std::string& vcd = options.vcd;
+    if (!vcd.empty() && (vcd.size() < 5 || vcd.substr(vcd.size() - 4) != vcd_suffix))
+        throw UsageError("--vcd: '" + printable(vcd) + "': expected a name that ends in .vcd");
+}
+
+int run_all(const Options& options, const std::vector<Scenario>& scenarios) {
+    std::vector<std::unique_ptr<CellBench>> benches;  // all before the first runs: SystemC elaborates once
+    for (const Scenario& scenario : scenarios) {
+        const std::string name = "bench_" + std::to_string(benches.size());
+        benches.push_back(
+            std::make_unique<CellBench>(name.c_str(), scenario.setup, scenario.events, scenario.last));
+    }
+    std::unique_ptr<Waveform> waveform;
+    if (!options.vcd.empty()) waveform = std::make_unique<Waveform>(options.vcd, *benches.front());
+    std::size_t failed = 0;
+    for (std::size_t i = 0; i < benches.size(); ++i) {
+        const std::vector<std::string> failures = benches[i]->run();
+        failed += !failures.empty();
+        if (!options.quiet) {
+            std::cout << (failures.empty() ? "passed  " : "FAILED  ") << scenarios[i].name;
+            if (!scenarios[i].says.empty()) std::cout << ": " << scenarios[i].says;
+            std::cout << "; " << benches[i]->matched() << " events to cycle "
+                      << benches[i]->environment().scheduler.now() << '\n';
+        }
+        for (const std::string& failure : failures) std::cerr << scenarios[i].name << ": " << failure << '\n';
+    }
+    if (waveform) waveform->finish();
+    if (!options.quiet) std::cout << benches.size() - failed << " of " << benches.size() << " passed\n";
+    return failed ? exit_differs : exit_done;
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{
+        "One cell with drivers on its four sides: scripted scenarios, and golden vectors of real runs"};
+    app.name("cell_tb");
+    Options options;
+    app.add_option("scenario", options.names, "scenarios to run; default: all of them");
+    app.add_flag("--list", options.list, "print the scenarios' names and what they show");
+    app.add_option("--replay", options.replay,
+                   "golden vectors of 'raycell render --golden', to be driven and checked")
+        ->type_name("FILE");
+    app.add_option("--vcd", options.vcd,
+                   "waveforms of the cell, of one scenario or file; FILE.gtkw beside it")
+        ->type_name("FILE.vcd");
+    app.add_option("--write", options.write, "write one scenario as golden vectors instead of running it")
+        ->type_name("FILE");
+    app.add_flag("--quiet", options.quiet, "print nothing but failures");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? exit_done : exit_usage;
+    }
+    const std::vector<Scenario> scenarios = chosen_scenarios(options);
+    check(options, scenarios.size());
+    if (options.list) {
+        for (const Scenario& scenario : scenarios)
+            std::cout << scenario.name << ": " << scenario.says << '\n';
+        return exit_done;
+    }
+    if (!options.write.empty()) {
+        write_scenario(scenarios.front(), options.write);
+        return exit_done;
+    }
+    return run_all(options, scenarios);
+}
+
+}  // namespace
+
+int sc_main(int argc, char** argv) {
+    (void)banner_off;
+    try {
+        return run(argc, argv);
+    } catch (const raycell::GoldenError& error) {
+        std::cerr << error.what() << '\n';
+    } catch (const std::exception& error) {
+        std::cerr << "cell_tb: " << error.what() << '\n';
+    }
+    return raycell::exit_usage;
+}

@@ -1,0 +1,127 @@
+#include "testbench/cell/script.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "model/trapeze.hpp"
+
+namespace raycell {
+namespace {
+
+std::vector<std::string> split(const std::string& text) {
+    std::istringstream words(text);
+    std::vector<std::string> tokens;
+    for (std::string word; words >> word;) tokens.push_back(word);
+    return tokens;
+}
+
+}  // namespace
+
+Script::Script(std::string name, std::string says) {
+    scenario_.name = std::move(name);
+    scenario_.says = std::move(says);
+    CellSetup& setup = scenario_.setup;
+    setup.picture.width = setup.picture.height = 3;
+    setup.picture.depth_levels = 10;
+    setup.picture.exterior = ExteriorMode::none;
+    setup.picture.viewer = ViewerMode::infinity;
+    setup.picture.numbers.arithmetic = Numbers::exact;
+    setup.picture.normal_offset = 0;
+    Frame& frame = setup.scene.frame;
+    frame.width = frame.height = 3;
+    frame.depth = frame.depth_levels = 10;
+    frame.viewer_at_infinity = true;
+    setup.x = setup.y = 1;
+    setup.linked.fill(true);
+}
+
+std::string Script::text(Message message) const { return text_of(Words(arithmetic_), message); }
+
+Script& Script::add(GoldenEvent::What what, Cycle cycle, Side side, int index, int cycles,
+                    const std::string& text) {
+    GoldenEvent event{what, cycle, int(side), index, cycles, split(text), 0};
+    if (what == GoldenEvent::What::out && (event.tokens[0] == "ray" || event.tokens[0] == "answer"))
+        event.tokens[2] = "*";
+    scenario_.events.push_back(std::move(event));
+    return *this;
+}
+
+Script& Script::in(Cycle cycle, Side from, int index, int cycles, const Ray& ray) {
+    RayPacket packet;
+    packet.ray = ray;
+    return add(GoldenEvent::What::in, cycle, from, index, cycles, text(Message(&packet)));
+}
+
+Script& Script::in(Cycle cycle, Side from, int index, int cycles, const Answer& answer) {
+    Answer copy = answer;
+    return add(GoldenEvent::What::in, cycle, from, index, cycles, text(Message(&copy)));
+}
+
+Script& Script::in(Cycle cycle, Side from, int cycles, const LoadItem& item) {
+    LoadItem copy = item;
+    return add(GoldenEvent::What::in, cycle, from, 0, cycles, text(Message(&copy)));
+}
+
+Script& Script::free(Cycle cycle, Side towards, int index) {
+    return add(GoldenEvent::What::free, cycle, towards, index, 0, "");
+}
+
+Script& Script::trace(Cycle first) { return add(GoldenEvent::What::phase, first, Side::east, 0, 0, "trace"); }
+
+Script& Script::take(Cycle cycle, Side from, int index) {
+    return add(GoldenEvent::What::take, cycle, from, index, 0, "");
+}
+
+Script& Script::out(Cycle cycle, Side towards, int index, int cycles, const Ray& ray) {
+    RayPacket packet;
+    packet.ray = ray;
+    return add(GoldenEvent::What::out, cycle, towards, index, cycles, text(Message(&packet)));
+}
+
+Script& Script::out(Cycle cycle, Side towards, int index, int cycles, const Answer& answer) {
+    Answer copy = answer;
+    return add(GoldenEvent::What::out, cycle, towards, index, cycles, text(Message(&copy)));
+}
+
+Script& Script::out(Cycle cycle, Side towards, int cycles, const LoadItem& item) {
+    LoadItem copy = item;
+    return add(GoldenEvent::What::out, cycle, towards, 0, cycles, text(Message(&copy)));
+}
+
+Script& Script::pixel(Cycle cycle, const dvec3& colour) {
+    std::string words;
+    for (int channel = 0; channel < 3; ++channel) words += " " + Words::hexadecimal(colour[channel]);
+    return add(GoldenEvent::What::pixel, cycle, Side::east, 0, 0, words);
+}
+
+Scenario Script::until(Cycle last) {
+    scenario_.last = last;
+    std::stable_sort(scenario_.events.begin(), scenario_.events.end(),
+                     [](const GoldenEvent& a, const GoldenEvent& b) { return a.cycle < b.cycle; });
+    return scenario_;
+}
+
+LoadItem load_item(LoadItem::Kind kind, std::uint32_t object) {
+    LoadItem item;
+    item.kind = kind;
+    item.object = object;
+    return item;
+}
+
+LoadItem span_of(const CellSetup& setup, std::uint32_t polygon, const dvec3& corner, const dvec3& u,
+                 const dvec3& v, int x, int y) {
+    const Arithmetic arithmetic;
+    LoadItem item = load_item(LoadItem::Kind::span);
+    const Polygon whole = make_polygon(polygon, 0, {corner, corner + u, corner + u + v, corner + v});
+    const std::vector<Trapeze> trapezes = precompute(whole, arithmetic);
+    const auto span =
+        trapezes.size() == 1 ? cut_span(trapezes[0], y, setup.picture.width, arithmetic) : std::nullopt;
+    if (!span)
+        throw std::logic_error("a rectangle of a scenario must be one trapeze that meets the cell's row");
+    item.span = *span;
+    while (item.span.x < x) advance(item.span, arithmetic);
+    return item;
+}
+
+}  // namespace raycell

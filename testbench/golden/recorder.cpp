@@ -1,0 +1,91 @@
+#include "testbench/golden/recorder.hpp"
+
+#include "testbench/golden/messages.hpp"
+
+namespace raycell {
+
+GoldenRecorder::GoldenRecorder(sc_core::sc_module_name name, Machine& machine, std::vector<Target> targets,
+                               std::string configuration)
+    : sc_module(name),
+      machine_(machine),
+      words_(machine.environment().context.arithmetic),
+      targets_(std::move(targets)),
+      configuration_(std::move(configuration)) {}
+
+/// Ports know their links only now.
+void GoldenRecorder::start_of_simulation() {
+    for (std::size_t target = 0; target < targets_.size(); ++target) attach(target);
+}
+
+void GoldenRecorder::attach(std::size_t target) {
+    CellModule& module = *targets_[target].module;
+    const Environment& env = machine_.environment();
+    CellSetup setup;
+    setup.x = module.cell().x();
+    setup.y = module.cell().y();
+    for (int side = 0; side < side_count; ++side) {
+        const auto i = std::size_t(side);
+        setup.linked[i] = module.in[i].size() > 0;
+        if (!setup.linked[i]) continue;
+        watch(dynamic_cast<Link&>(*module.in[i][0]), {target, true, side});
+        watch(dynamic_cast<Link&>(*module.out[i][0]), {target, false, side});
+    }
+    if (module.load_in.size() > 0) {
+        watch(dynamic_cast<Link&>(*module.load_in[0]), {target, true, GoldenEvent::load_link});
+    }
+    std::fputs(setup_text(setup, env.context, configuration_).c_str(), targets_[target].file);
+}
+
+void GoldenRecorder::watch(Link& link, const Role& role) {
+    roles_[&link].push_back(role);
+    links_.push_back(&link);
+    link.set_observer(this);
+}
+
+void GoldenRecorder::write(std::size_t target, const GoldenEvent& event) {
+    std::fputs((text_of(event) + "\n").c_str(), targets_[target].file);
+}
+
+void GoldenRecorder::sent(const Link& link, int index, const Message& message, int cycles, Cycle now) {
+    for (const Role& role : roles_.at(&link)) {
+        const auto what = role.incoming ? GoldenEvent::What::in : GoldenEvent::What::out;
+        write(role.target, {what, now, role.side, index, cycles, {text_of(words_, message)}, 0});
+    }
+}
+
+void GoldenRecorder::popped(const Link& link, int index, const Message&, Cycle now) {
+    for (const Role& role : roles_.at(&link)) {
+        const auto what = role.incoming ? GoldenEvent::What::take : GoldenEvent::What::free;
+        write(role.target, {what, now, role.side, index, 0, {}, 0});
+    }
+}
+
+void GoldenRecorder::phase_begins(Phase phase, Cycle first) {
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+        write(i,
+              {GoldenEvent::What::phase, first, 0, 0, 0, {phase == Phase::precast ? "precast" : "trace"}, 0});
+    }
+}
+
+void GoldenRecorder::draining(bool on, Cycle now) {
+    for (std::size_t i = 0; i < targets_.size(); ++i)
+        write(i, {GoldenEvent::What::drain, now, 0, 0, 0, {on ? "1" : "0"}, 0});
+}
+
+void GoldenRecorder::finish() {
+    const Environment& env = machine_.environment();
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+        const Cell& cell = targets_[i].module->cell();
+        const Pixel& pixel = env.picture.at(cell.x(), cell.y());
+        if (env.phase == Phase::trace && pixel.cycle != 0) {
+            GoldenEvent event{GoldenEvent::What::pixel, env.phase_start + pixel.cycle, 0, 0, 0, {}, 0};
+            for (int channel = 0; channel < 3; ++channel)
+                event.tokens.push_back(words_.word(words_.formats().intensity, pixel.colour[channel]));
+            std::fprintf(targets_[i].file, "%s\n", text_of(event).c_str());
+        }
+        std::fprintf(targets_[i].file, "%llu end\n", static_cast<unsigned long long>(env.scheduler.now()));
+    }
+    for (Link* link : links_) link->set_observer(nullptr);
+}
+
+}  // namespace raycell
