@@ -146,7 +146,16 @@ int run(Options& options, const OptionTable& table) {
     {
         const MachineTap tap(*machine, plan.layout, watch);
         const bool progress = shows_progress(o);
-        result = machine->run(progress ? show_progress : std::function<void(const RunProgress&)>());
+        try {
+            result = machine->run(progress ? show_progress : std::function<void(const RunProgress&)>());
+        } catch (const std::logic_error& error) {  // the machine's own check of conservation
+            watch.finish();
+            std::cerr << "loading_tb: " << error.what() << '\n';
+            complain({{"content", watch.content()},
+                      {"order", watch.order()},
+                      {"conservation", watch.conservation()}});
+            return exit_comparison;
+        }
         if (progress) end_progress();
     }
     Loading loading{plan, watch, result, o.picture, o.machine, scene, stores_of(*machine), {}};

@@ -3,20 +3,20 @@
 namespace raycell::loading {
 
 void MachineTap::LinkTap::sent(const Link&, int, const Message& message, int cycles, Cycle now) {
-    watch_.sent(index_, *message.load, cycles, now);
+    listener_.sent(index_, *message.load, cycles, now);
 }
 
 void MachineTap::LinkTap::popped(const Link&, int, const Message& message, Cycle now) {
-    watch_.popped(index_, *message.load, now);
+    listener_.popped(index_, *message.load, now);
 }
 
 void MachineTap::listen(Link& link, std::size_t index) {
     if (taps_.size() == taps_.capacity()) throw std::logic_error("more loading links than the layout has");
-    link.set_observer(&taps_.emplace_back(watch_, index));
+    link.set_observer(&taps_.emplace_back(listener_, index));
     links_.push_back(&link);
 }
 
-MachineTap::MachineTap(Machine& machine, const Layout& layout, LoadWatch& watch) : watch_(watch) {
+MachineTap::MachineTap(Machine& machine, const Layout& layout, LoadListener& listener) : listener_(listener) {
     taps_.reserve(layout.links());  // links keep pointers to their taps
     listen(machine.polygon_link(), Layout::polygons);
     listen(machine.trapeze_link(), Layout::trapezes);

@@ -1,4 +1,4 @@
-// Hears a machine's loading pipeline for a LoadWatch.
+// Hears a machine's loading pipeline for a listener.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace raycell::loading {
 /// Watches the loading links of a machine from its making to its end; all three must live until then.
 class MachineTap {
   public:
-    MachineTap(Machine& machine, const Layout& layout, LoadWatch& watch);
+    MachineTap(Machine& machine, const Layout& layout, LoadListener& listener);
     ~MachineTap();
     MachineTap(const MachineTap&) = delete;
     MachineTap& operator=(const MachineTap&) = delete;
@@ -19,17 +19,17 @@ class MachineTap {
   private:
     class LinkTap : public LinkObserver {
       public:
-        LinkTap(LoadWatch& watch, std::size_t index) : watch_(watch), index_(index) {}
+        LinkTap(LoadListener& listener, std::size_t index) : listener_(listener), index_(index) {}
         void sent(const Link& link, int index, const Message& message, int cycles, Cycle now) override;
         void popped(const Link& link, int index, const Message& message, Cycle now) override;
 
       private:
-        LoadWatch& watch_;
+        LoadListener& listener_;
         std::size_t index_;
     };
     void listen(Link& link, std::size_t index);
 
-    LoadWatch& watch_;
+    LoadListener& listener_;
     std::vector<LinkTap> taps_;
     std::vector<Link*> links_;
 };

@@ -39,13 +39,20 @@ struct LinkUse {
 };
 
 /// Told of every message that starts over a link and every one that leaves a buffer, cycle by cycle.
-class LoadWatch {
+class LoadListener {
+  public:
+    virtual ~LoadListener() = default;
+    virtual void sent(std::size_t link, const LoadItem& item, int cycles, Cycle now) = 0;
+    virtual void popped(std::size_t link, const LoadItem& item, Cycle now) = 0;
+};
+
+class LoadWatch : public LoadListener {
   public:
     /// Both must outlive it. `stage_link_depth`: of the two links before the distributors.
     LoadWatch(const LoadPlan& plan, const MachineSettings& machine, int stage_link_depth);
 
-    void sent(std::size_t link, const LoadItem& item, int cycles, Cycle now);
-    void popped(std::size_t link, const LoadItem& item, Cycle now);
+    void sent(std::size_t link, const LoadItem& item, int cycles, Cycle now) override;
+    void popped(std::size_t link, const LoadItem& item, Cycle now) override;
     /// After a run that came to its end: is everything there, is nothing left?
     void finish();
 
