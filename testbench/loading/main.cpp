@@ -127,6 +127,24 @@ void complain(const NamedFaults& checks) {
     }
 }
 
+/// False where the machine itself found that messages were lost.
+bool load(Machine& machine, const LoadPlan& plan, LoadWatch& watch, const RenderOptions& options,
+          RunResult& result) {
+    const MachineTap tap(machine, plan.layout, watch);
+    const bool progress = shows_progress(options);
+    try {
+        result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
+    } catch (const std::logic_error& error) {
+        watch.finish();
+        std::cerr << "loading_tb: " << error.what() << '\n';
+        complain(
+            {{"content", watch.content()}, {"order", watch.order()}, {"conservation", watch.conservation()}});
+        return false;
+    }
+    if (progress) end_progress();
+    return true;
+}
+
 int run(Options& options, const OptionTable& table) {
     RenderOptions& o = options.run;
     o.picture.stage = RunStage::load;
@@ -143,21 +161,7 @@ int run(Options& options, const OptionTable& table) {
     static Machine* const machine = new Machine("machine", scene, o.picture, o.machine, nullptr);
     LoadWatch watch(plan, o.machine, Machine::stage_link_depth);
     RunResult result;
-    {
-        const MachineTap tap(*machine, plan.layout, watch);
-        const bool progress = shows_progress(o);
-        try {
-            result = machine->run(progress ? show_progress : std::function<void(const RunProgress&)>());
-        } catch (const std::logic_error& error) {  // the machine's own check of conservation
-            watch.finish();
-            std::cerr << "loading_tb: " << error.what() << '\n';
-            complain({{"content", watch.content()},
-                      {"order", watch.order()},
-                      {"conservation", watch.conservation()}});
-            return exit_comparison;
-        }
-        if (progress) end_progress();
-    }
+    if (!load(*machine, plan, watch, o, result)) return exit_comparison;
     Loading loading{plan, watch, result, o.picture, o.machine, scene, stores_of(*machine), {}};
     loading.checks = check(loading, watch);
     Json json = report(loading);
