@@ -36,7 +36,9 @@ class Distribution : public sc_core::sc_module {
   public:
     Distribution(sc_core::sc_module_name name, Environment& environment);
     RowDistributor& row(int y) { return *rows_[std::size_t(y)]; }
+    const RowDistributor& row(int y) const { return *rows_[std::size_t(y)]; }
     StageStatistics statistics() const;
+    /// From each row to the row below.
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
 
   private:

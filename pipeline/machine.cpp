@@ -11,8 +11,6 @@
 namespace raycell {
 namespace {
 
-constexpr int stage_link_depth = 4;  ///< messages between two stages before the array
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -91,6 +91,16 @@ class Machine : public sc_core::sc_module {
     Array& array() { return array_; }
     Environment& environment() { return environment_; }
 
+    // The loading pipeline before the array, for looking at it.
+    static constexpr int stage_link_depth = 4;  ///< messages between two stages before the array
+    const Geometry& geometry() const { return geometry_; }
+    const Precomputation& precomputation() const { return precomputation_; }
+    const Distribution& distribution() const { return distribution_; }
+    Link& polygon_link() { return to_precomputation_; }
+    Link& trapeze_link() { return to_distribution_; }
+    /// From each row's distributor into its first cell.
+    const std::vector<std::unique_ptr<Link>>& row_links() const { return row_links_; }
+
     /// Cells, (x, y), in which something stands: those with the oldest messages first, `most` at most.
     std::vector<std::pair<int, int>> blocked_cells(std::size_t most) const;
 

@@ -205,21 +205,36 @@ nlohmann::ordered_json OptionTable::values() const {
     return all;
 }
 
-void add_scene_options(OptionTable& table, RenderOptions& options) {
+void add_placement_options(OptionTable& table, RenderOptions& options) {
     PictureSettings& p = options.picture;
     table.text("scene", options.scene, "FILE", "scene: .nff or .obj");
     table.positional("file", options.scene, "the same; has precedence over --scene");
-    table.text("output", options.prefix, "PREFIX",
-               "where results go: PREFIX.exr, PREFIX.png, PREFIX.json, ...");
     table.text("view", options.view, "FILE.nff", "take background, view and sources from this file");
     table.choice("viewer", p.viewer, {{"scene", ViewerMode::scene}, {"infinity", ViewerMode::infinity}},
                  "viewer at the scene's distance, or at infinity (axial primary rays)");
     table.size("cells", p.width, p.height, "size of the array, one cell per pixel");
     table.number("chord-error", p.chord_error, 1e-3, 1e3,
                  "largest gap between a curved object and its polygons, cells");
+}
+
+void add_scene_options(OptionTable& table, RenderOptions& options) {
+    PictureSettings& p = options.picture;
+    add_placement_options(table, options);
+    table.text("output", options.prefix, "PREFIX",
+               "where results go: PREFIX.exr, PREFIX.png, PREFIX.json, ...");
     table.number("max-depth", p.max_depth, 0, 62, "generations of rays after the primary one");
     table.number("min-weight", p.min_weight, 0.0, 1.0, "share of a pixel below which a ray is not sent");
     table.flag("quiet", options.quiet, "no progress, no summary");
+}
+
+void add_link_options(OptionTable& table, MachineSettings& m) {
+    table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
+    table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
+    table.number(
+        "stall", m.stall, 0.0, 0.9,
+        "probability that a transfer or an operation takes a cycle more, and again; drawn by --seed");
+    table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62,
+                 "timed engine: stop after so many cycles; 0: never");
 }
 
 void add_communication_options(OptionTable& table, MachineSettings& m) {
@@ -236,13 +251,7 @@ void add_communication_options(OptionTable& table, MachineSettings& m) {
     table.choice("slots", m.slots,
                  {{"reserved", Slots::reserved}, {"free", Slots::free}, {"nested", Slots::nested}},
                  "slots kept by generation, free for all, or kept for deeper generations alone");
-    table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
-    table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
-    table.number(
-        "stall", m.stall, 0.0, 0.9,
-        "probability that a transfer or an operation takes a cycle more, and again; drawn by --seed");
-    table.number("max-cycles", m.max_cycles, std::int64_t(0), std::int64_t(1) << 62,
-                 "timed engine: stop after so many cycles; 0: never");
+    add_link_options(table, m);
 }
 
 void add_watch_options(OptionTable& table, RenderOptions& options) {
@@ -252,16 +261,8 @@ void add_watch_options(OptionTable& table, RenderOptions& options) {
                 "prints the lives of all rays of a pixel's tree; may come several times");
 }
 
-void add_machine_options(OptionTable& table, RenderOptions& options) {
-    PictureSettings& p = options.picture;
-    MachineSettings& m = options.machine;
+void add_voxel_options(OptionTable& table, PictureSettings& p) {
     table.number("depth", p.depth_levels, 1, 65536, "depth levels of the cube");
-    table.choice("stage", p.stage, {{"trace", RunStage::trace}, {"load", RunStage::load}},
-                 "trace rays, or stop after loading and show the nearest voxels");
-    table.choice("display", p.display, {{"phong", Display::phong}, {"gouraud", Display::gouraud}},
-                 "shading of --stage load");
-    table.choice("engine", options.engine, {{"timed", Engine::timed}, {"untimed", Engine::untimed}},
-                 "SystemC cells, or the recursive reference without time");
     table.choice("hit", p.hit,
                  {{"edge", HitTest::edge},
                   {"mask", HitTest::mask},
@@ -275,17 +276,33 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
         "shadows", p.shadows,
         {{"per-hit", Shadows::per_hit}, {"precast", Shadows::precast}, {"memo", Shadows::memo}},
         "a ray per hit and source; a bit per voxel and source before tracing; the same when first hit");
-    table.choice("exterior", p.exterior, {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},
-                 "rays that leave the cube: traced on by the exterior processors, or lost");
-    NumberSettings& n = p.numbers;
+    table.number("voxel-capacity", p.voxel_capacity, 0, 1000000, "voxels that a cell can hold; 0: unlimited");
+    table.choice("display", p.display, {{"phong", Display::phong}, {"gouraud", Display::gouraud}},
+                 "shading of --stage load");
+}
+
+void add_word_options(OptionTable& table, NumberSettings& n) {
     table.choice("arithmetic", n.arithmetic, {{"fixed", Numbers::fixed}, {"exact", Numbers::exact}},
                  "numbers of the cell: words of word-bits, or double precision");
     table.number("word-bits", n.word_bits, 8, 32, "bits of a word in messages, voxels and the ALU");
     table.choice("rounding", n.rounding, {{"nearest", Rounding::nearest}, {"truncate", Rounding::truncate}},
                  "words: to the nearest, ties to even, or cut off");
+}
+
+void add_machine_options(OptionTable& table, RenderOptions& options) {
+    PictureSettings& p = options.picture;
+    MachineSettings& m = options.machine;
+    add_voxel_options(table, p);
+    table.choice("stage", p.stage, {{"trace", RunStage::trace}, {"load", RunStage::load}},
+                 "trace rays, or stop after loading and show the nearest voxels");
+    table.choice("engine", options.engine, {{"timed", Engine::timed}, {"untimed", Engine::untimed}},
+                 "SystemC cells, or the recursive reference without time");
+    table.choice("exterior", p.exterior, {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},
+                 "rays that leave the cube: traced on by the exterior processors, or lost");
+    add_word_options(table, p.numbers);
     const std::vector<std::pair<std::string, Iteration>> iterations = {
         {"newton", Iteration::newton}, {"table", Iteration::table}, {"rounded", Iteration::rounded}};
-    OperatorSettings& o = n.operators;
+    OperatorSettings& o = p.numbers.operators;
     table.choice("reciprocal", o.reciprocal, iterations,
                  "1/x: a table and one Newton step, the table alone, or digit by digit; cycles in --cost");
     table.choice("root", o.root, iterations, "1/sqrt(x), in the same ways");
@@ -298,7 +315,6 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     table.number("root-table", o.root_table, 4, 4096, "its entries, a power of two");
     table.number("power-table", o.power_table, 4, 4096, "entries of each of its two tables, a power of two");
     add_communication_options(table, m);
-    table.number("voxel-capacity", p.voxel_capacity, 0, 1000000, "voxels that a cell can hold; 0: unlimited");
     table.number("normal-offset", p.normal_offset, -1.0, 1.0,
                  "start of secondary rays off their polygon, cells; negative: what suits the arithmetic");
     table.number("exterior-processors", m.exterior_processors, 1, 1000000, "processors outside the cube");

@@ -100,9 +100,17 @@ struct RenderOptions {
     std::vector<CellRange> golden;  ///< cells whose messages are written
 };
 
-/// The options that render and truth share: scene, view, size, ray tree.
+/// Which scene, from where, on how many cells.
+void add_placement_options(OptionTable& table, RenderOptions& options);
+/// The options that render and truth share: the same, files, ray tree.
 void add_scene_options(OptionTable& table, RenderOptions& options);
-/// Ray store, buffers, networks, recovery, links, clock, limit of cycles.
+/// What a cell makes of a span: depth levels, hit test, normals, shadow bits, capacity, intensities.
+void add_voxel_options(OptionTable& table, PictureSettings& picture);
+/// Arithmetic, its words and their rounding.
+void add_word_options(OptionTable& table, NumberSettings& numbers);
+/// Bits of a link, clock, stalls, limit of cycles.
+void add_link_options(OptionTable& table, MachineSettings& machine);
+/// Ray store, buffers, networks, recovery, and the links' own.
 void add_communication_options(OptionTable& table, MachineSettings& machine);
 /// render's own, for watching rays.
 void add_watch_options(OptionTable& table, RenderOptions& options);

@@ -1,0 +1,112 @@
+#include "testbench/loading/layout.hpp"
+
+namespace raycell::loading {
+
+UnitGroup Layout::unit_group(std::size_t unit) const {
+    if (unit == geometry) return UnitGroup::geometry;
+    if (unit == precomputation) return UnitGroup::precomputation;
+    return unit < cell(0, 0) ? UnitGroup::distributors : UnitGroup::cells;
+}
+
+Layout::Place Layout::unit_place(std::size_t unit) const {
+    switch (unit_group(unit)) {
+        case UnitGroup::distributors:
+            return {-1, int(unit - distributor(0))};
+        case UnitGroup::cells: {
+            const std::size_t index = unit - cell(0, 0);
+            return {int(index % columns()), int(index / columns())};
+        }
+        case UnitGroup::geometry:
+        case UnitGroup::precomputation:
+            break;
+    }
+    return {};
+}
+
+std::string Layout::unit_name(std::size_t unit) const {
+    const Place place = unit_place(unit);
+    switch (unit_group(unit)) {
+        case UnitGroup::geometry:
+            return "geometry";
+        case UnitGroup::precomputation:
+            return "precomputation";
+        case UnitGroup::distributors:
+            return "distribution.row_" + std::to_string(place.y);
+        case UnitGroup::cells:
+            break;
+    }
+    return "cell_" + std::to_string(place.x) + "_" + std::to_string(place.y);
+}
+
+LinkGroup Layout::link_group(std::size_t link) const {
+    if (link == polygons) return LinkGroup::polygons;
+    if (link == trapezes) return LinkGroup::trapezes;
+    if (link < row(0)) return LinkGroup::down;
+    return link < row(0) + rows() ? LinkGroup::rows : LinkGroup::east;
+}
+
+Layout::Place Layout::link_place(std::size_t link) const { return unit_place(source_of(link)); }
+
+std::string Layout::link_name(std::size_t link) const {
+    const std::string source = unit_name(source_of(link));
+    switch (link_group(link)) {
+        case LinkGroup::polygons:
+        case LinkGroup::trapezes:
+            return source + ".out";
+        case LinkGroup::down:
+            return source + ".down";
+        case LinkGroup::rows:
+        case LinkGroup::east:
+            break;
+    }
+    return source + ".east";
+}
+
+std::size_t Layout::source_of(std::size_t link) const {
+    switch (link_group(link)) {
+        case LinkGroup::polygons:
+            return geometry;
+        case LinkGroup::trapezes:
+            return precomputation;
+        case LinkGroup::down:
+            return distributor(int(link - down(0)));
+        case LinkGroup::rows:
+            return distributor(int(link - row(0)));
+        case LinkGroup::east:
+            break;
+    }
+    const std::size_t index = link - (row(0) + rows());
+    return cell(int(index % (columns() - 1)), int(index / (columns() - 1)));
+}
+
+std::size_t Layout::sink_of(std::size_t link) const {
+    switch (link_group(link)) {
+        case LinkGroup::polygons:
+            return precomputation;
+        case LinkGroup::trapezes:
+            return distributor(0);
+        case LinkGroup::down:
+            return source_of(link) + 1;
+        case LinkGroup::rows:
+            return cell(0, int(link - row(0)));
+        case LinkGroup::east:
+            break;
+    }
+    return source_of(link) + 1;
+}
+
+std::size_t Layout::input_of(std::size_t unit) const {
+    const Place place = unit_place(unit);
+    switch (unit_group(unit)) {
+        case UnitGroup::geometry:
+        case UnitGroup::precomputation:
+            return polygons;
+        case UnitGroup::distributors:
+            return place.y == 0 ? trapezes : down(place.y - 1);
+        case UnitGroup::cells:
+            break;
+    }
+    return place.x == 0 ? row(place.y) : east(place.x - 1, place.y);
+}
+
+}  // namespace raycell::loading

@@ -1,0 +1,230 @@
+// loading_tb: the loading pipeline alone, no rays: does it load what it should, in order, and what holds it
+// up?
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <systemc>
+
+#include "testbench/loading/random_scene.hpp"
+#include "testbench/loading/report.hpp"
+#include "testbench/loading/tap.hpp"
+#include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/machine_run.hpp"
+#include "testbench/raycell/new_file.hpp"
+#include "testbench/raycell/report_json.hpp"
+#include "testbench/raycell/scene_input.hpp"
+
+namespace {
+
+using namespace raycell;
+using namespace raycell::loading;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+/// SystemC prints its banner before sc_main(); standard error belongs to the run's own messages.
+const bool banner_off = [] {
+    setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
+    return true;
+}();
+
+struct Options {
+    RenderOptions run;  ///< scene, array, machine, --output, --quiet
+    RandomPolygons random;
+};
+
+void add_random_options(OptionTable& table, RandomPolygons& r) {
+    table.number("random", r.count, 0, 10000000,
+                 "draws so many polygons instead of reading a scene; 0: none");
+    table.number("sides", r.sides, 3, 16, "random polygons: corners of each");
+    table.number("objects", r.objects, 1, 1000000, "random polygons: objects that they belong to");
+    table.number("least-size", r.least_size, 1e-3, 1e4, "random polygons: least diameter, cells");
+    table.number("most-size", r.most_size, 1e-3, 1e4, "random polygons: largest diameter, cells");
+    table.choice("sizes", r.sizes, {{"log", Sizes::log}, {"uniform", Sizes::uniform}},
+                 "random polygons: whether the diameter's logarithm is uniform or the diameter");
+    table.choice("slopes", r.slopes,
+                 {{"isotropic", Slopes::isotropic}, {"angle", Slopes::angle}, {"slope", Slopes::slope}},
+                 "random polygons: every direction alike, or angle with the screen or its tangent uniform to "
+                 "most-slope");
+    table.number("most-slope", r.most_slope, 0.0, 1e6, "random polygons: largest depth per cell; see slopes");
+    table.number("cube-depth", r.depth, 1e-3, 1e6, "random polygons: depth of the cube, cells");
+}
+
+void add_options(OptionTable& table, Options& options) {
+    RenderOptions& run = options.run;
+    table.text("output", run.prefix, "PREFIX",
+               "writes PREFIX.json, .toml, .columns.csv, .rows.csv, .links.csv; empty: no files");
+    add_placement_options(table, run);
+    add_random_options(table, options.random);
+    add_voxel_options(table, run.picture);
+    add_word_options(table, run.picture.numbers);
+    table.number("buffer", run.machine.buffer_depth, 1, 1024,
+                 "depth of every buffer of distributors and cells, messages");
+    add_link_options(table, run.machine);
+    table.number("seed", run.machine.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1,
+                 "of random polygons and stalls");
+    table.costs(run.machine.costs);
+    table.flag("quiet", run.quiet, "no progress, no summary");
+}
+
+CellScene scene_of(Options& options) {
+    RandomPolygons& random = options.random;
+    random.seed = options.run.machine.seed;
+    if (random.count == 0) return read_and_place(options.run);
+    if (!options.run.scene.empty()) throw UsageError("--random and a scene; expected one of them");
+    return random_scene(random, options.run.picture);
+}
+
+std::vector<const CellStore*> stores_of(Machine& machine) {
+    std::vector<const CellStore*> stores;
+    for (const auto& cell : machine.array().cells()) stores.push_back(&cell->cell().store());
+    return stores;
+}
+
+/// A run that was stopped has loaded a part of the scene: what it should hold is not known then.
+NamedFaults check(Loading& loading, LoadWatch& watch) {
+    const Verdict verdict = loading.result.verdict;
+    const bool whole = verdict == Verdict::completed || verdict == Verdict::capacity;
+    NamedFaults checks;
+    if (whole) {
+        watch.finish();
+        const Arithmetic arithmetic(loading.picture.numbers, extent_of(loading.scene.frame));
+        const std::vector<CellStore> untimed = load_array(loading.scene, loading.picture, arithmetic);
+        checks.emplace_back("stores", compare_stores(loading.cells, untimed, loading.plan.layout.width));
+    }
+    checks.emplace_back("content", watch.content());
+    checks.emplace_back("order", watch.order());
+    checks.emplace_back("promptness", watch.promptness());
+    if (whole) {
+        checks.emplace_back("conservation", watch.conservation());
+        checks.emplace_back("bound", check_bound(loading.result.load_cycles, loading.plan.bound()));
+    }
+    return checks;
+}
+
+void write(const std::string& prefix, const Loading& loading, const Json& json) {
+    OutputSet outputs(prefix);
+    const auto text = [&outputs](const char* suffix, const std::string& content) {
+        outputs.write(suffix, [&](const std::string& path) { write_text(path, content); });
+    };
+    text(".columns.csv", columns_csv(loading));
+    text(".rows.csv", rows_csv(loading));
+    text(".links.csv", links_csv(loading));
+    text(".toml", to_toml(json["config"]));
+    text(".json", to_text(json));
+    outputs.keep();
+}
+
+void complain(const NamedFaults& checks) {
+    for (const auto& [name, faults] : checks) {
+        if (faults.count == 0) continue;
+        std::cerr << "loading_tb: check '" << name << "' failed, " << faults.count << " faults\n";
+        for (const std::string& fault : faults.first) std::cerr << "  " << fault << '\n';
+    }
+}
+
+/// False where the machine itself found that messages were lost.
+bool load(Machine& machine, const LoadPlan& plan, LoadWatch& watch, const RenderOptions& options,
+          RunResult& result) {
+    const MachineTap tap(machine, plan.layout, watch);
+    const bool progress = shows_progress(options);
+    try {
+        result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
+    } catch (const std::logic_error& error) {
+        watch.finish();
+        std::cerr << "loading_tb: " << error.what() << '\n';
+        complain(
+            {{"content", watch.content()}, {"order", watch.order()}, {"conservation", watch.conservation()}});
+        return false;
+    }
+    if (progress) end_progress();
+    return true;
+}
+
+int run(Options& options, const OptionTable& table) {
+    RenderOptions& o = options.run;
+    o.picture.stage = RunStage::load;
+    if (!o.prefix.empty()) check_output(o.prefix);
+    check_memory(o);
+    const CellScene scene = scene_of(options);
+    for (const std::string& warning : range_warnings(Context(scene, o.picture))) {
+        std::cerr << "loading_tb: warning: " << warning << '\n';
+    }
+    const auto start = Clock::now();
+    const LoadPlan plan = plan_loading(scene, o.picture, o.machine);
+    const double wall_plan = std::chrono::duration<double>(Clock::now() - start).count();
+    // Never destroyed: SystemC takes ports down in quadratic time.
+    static Machine* const machine = new Machine("machine", scene, o.picture, o.machine, nullptr);
+    LoadWatch watch(plan, o.machine, Machine::stage_link_depth);
+    RunResult result;
+    if (!load(*machine, plan, watch, o, result)) return exit_comparison;
+    Loading loading{plan, watch, result, o.picture, o.machine, scene, stores_of(*machine), {}};
+    loading.checks = check(loading, watch);
+    Json json = report(loading);
+    json["config"] = table.values();
+    json["model"]["wall_seconds"] = {{"plan", wall_plan}, {"load", result.wall_load}};
+    if (!o.prefix.empty()) write(o.prefix, loading, json);
+    explain(result, "loading_tb");
+    complain(loading.checks);
+    if (!o.quiet) std::cout << summary(json);
+    return count_of(loading.checks) > 0 ? exit_comparison : exit_code(result.verdict);
+}
+
+/// The command line's arguments behind those of --config, so that the former take precedence. A file that
+/// `raycell render` wrote serves too: what only rays need is passed over.
+std::vector<std::string> with_configuration(const std::vector<std::string>& words, const CLI::App& app) {
+    const std::string path = configuration_named(words);
+    if (path.empty()) return {words.begin() + 1, words.end()};
+    RenderOptions ignored;
+    CLI::App render;
+    OptionTable table(render);
+    add_scene_options(table, ignored);
+    add_machine_options(table, ignored);
+    add_watch_options(table, ignored);
+    add_probe_options(table, ignored);
+    std::vector<std::string> all = arguments_from_file(path, app, &render);
+    all.insert(all.end(), words.begin() + 1, words.end());
+    return all;
+}
+
+int run(int argc, char** argv) {
+    Options options;
+    options.run.prefix.clear();
+    CLI::App app{"The loading pipeline alone: does it load what it should, and what holds it up?"};
+    app.name("loading_tb");
+    OptionTable table(app);
+    app.add_option(
+           "--config",
+           "options from a file as a run writes it, or raycell render; the command line has precedence")
+        ->type_name("FILE");
+    add_options(table, options);
+    std::vector<std::string> words = with_configuration({argv, argv + argc}, app);
+    std::reverse(words.begin(), words.end());  // CLI11 takes a vector from its end
+    try {
+        app.parse(words);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? exit_done : exit_usage;
+    }
+    const int code = run(options, table);
+    std::cout.flush();
+    if (!std::cout) throw std::runtime_error("standard output can't be written");
+    return code;
+}
+
+}  // namespace
+
+int sc_main(int argc, char** argv) {
+    (void)banner_off;
+    try {
+        return run(argc, argv);
+    } catch (const std::bad_alloc&) {
+        std::cerr << "loading_tb: out of memory; expected a smaller array or fewer polygons\n";
+    } catch (const std::exception& error) {
+        std::cerr << "loading_tb: " << error.what() << '\n';
+    }
+    return raycell::exit_usage;
+}

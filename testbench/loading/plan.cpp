@@ -1,0 +1,282 @@
+#include "testbench/loading/plan.hpp"
+
+#include <cstring>
+
+#include "model/message.hpp"
+#include "model/stall.hpp"
+
+namespace raycell::loading {
+namespace {
+
+using Kind = LoadItem::Kind;
+
+class Digest {
+  public:
+    Digest& operator<<(std::uint64_t value) {
+        hash_ = mix_bits(hash_, value);
+        return *this;
+    }
+    Digest& operator<<(int value) { return *this << std::uint64_t(std::uint32_t(value)); }
+    Digest& operator<<(std::uint32_t value) { return *this << std::uint64_t(value); }
+    Digest& operator<<(double value) {
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &value, sizeof bits);
+        return *this << bits;
+    }
+    Digest& operator<<(const dvec3& v) { return *this << v.x << v.y << v.z; }
+    Digest& operator<<(const Plane& p) { return *this << p.n << p.c; }
+    Digest& operator<<(const NormalField& n) { return *this << n.base << n.du << n.dv; }
+    Digest& operator<<(const EdgeFunction& e) { return *this << e.a << e.b << e.c << e.piece; }
+    template <typename List>
+    Digest& list(const List& items, int count) {
+        *this << count;
+        for (int i = 0; i < count; ++i) *this << items[std::size_t(i)];
+        return *this;
+    }
+    std::uint64_t value() const { return hash_; }
+
+  private:
+    std::uint64_t hash_ = 0;
+};
+
+void add(Digest& d, const Polygon& p) {
+    d << p.id << p.object << p.plane << p.drop << p.slack << p.normal;
+    d.list(p.vertices, int(p.vertices.size()));
+}
+
+void add(Digest& d, const Trapeze& t, const CornerIntensities& intensities) {
+    d << t.polygon << t.object << t.plane << t.drop << t.normal;
+    d.list(t.corners, t.corner_count).list(t.edges, t.edge_count);
+    d << t.top << t.bottom << t.slack;
+    d.list(intensities, int(intensities.size()));
+}
+
+void add(Digest& d, const Span& s) {
+    d << s.polygon << s.object << s.x << s.last << s.plane << s.drop << s.normal;
+    d.list(s.edges, s.edge_count);
+    d << s.near << s.d_near << s.far << s.d_far << s.z_min << s.z_max << s.slack;
+    d.list(s.outline, s.outline_count);
+    d << s.intensity << s.d_intensity;
+}
+
+/// Goes through the scene in the loading order and adds up what each unit and link has to do with it.
+class Planner {
+  public:
+    Planner(const CellScene& scene, const PictureSettings& picture, const MachineSettings& machine)
+        : scene_(scene),
+          picture_(picture),
+          machine_(machine),
+          costs_(machine.costs),
+          arithmetic_(picture.numbers, extent_of(scene.frame)),
+          bits_(message_bits(picture, machine, arithmetic_.formats())) {
+        Layout& layout = plan_.layout;
+        layout.width = scene.frame.width;
+        layout.height = scene.frame.height;
+        plan_.units.resize(layout.units());
+        plan_.links.resize(layout.links());
+        plan_.rows.resize(std::size_t(layout.height));
+        // One place more: what is added at `last + 1` is past the row's end.
+        const std::size_t cells = std::size_t(layout.width + 1) * std::size_t(layout.height);
+        voxels_begin_.resize(cells);
+        spans_end_.resize(cells);
+    }
+
+    LoadPlan run() {
+        broadcast(Kind::setup, 0, bits_.setup(scene_.sources.size()));
+        std::int64_t object = -1;
+        for (Polygon polygon : scene_.polygons) {
+            if (!clip_to_cube(polygon, scene_.frame.cube(), arithmetic_)) {
+                work_ += costs_.geometry_polygon;
+                continue;
+            }
+            if (std::int64_t(polygon.object) != object) {
+                object = polygon.object;
+                broadcast(Kind::features, polygon.object, bits_.features);
+            }
+            load(polygon);
+        }
+        broadcast(Kind::end_of_scene, 0, bits_.end_of_scene);
+        add_up_rows();
+        return std::move(plan_);
+    }
+
+  private:
+    std::uint64_t cycles(int bits) const { return std::uint64_t(link_cycles(bits, machine_.link_bits)); }
+    Need& unit(std::size_t index) { return plan_.units[index]; }
+    Need& link(std::size_t index) { return plan_.links[index]; }
+
+    void put_out(const LoadItem& item, int bits) {
+        plan_.polygons.push_back(digest_of(item));
+        plan_.geometry_work.push_back(std::uint32_t(work_));
+        unit(Layout::geometry).add(1, work_);
+        link(Layout::polygons).add(1, cycles(bits));
+        work_ = 1;
+    }
+
+    /// To every unit and over every link.
+    void broadcast(Kind kind, std::uint32_t object, int bits) {
+        LoadItem item;
+        item.kind = kind;
+        item.object = object;
+        put_out(item, bits);
+        const std::uint64_t digest = digest_of(item);
+        unit(Layout::precomputation).add(1, 0);
+        link(Layout::trapezes).add(1, cycles(bits));
+        plan_.trapezes.push_back(digest);
+        for (int y = 0; y < plan_.layout.height; ++y) {
+            unit(plan_.layout.distributor(y)).add(1, costs_.distribution_pass);
+            if (y + 1 < plan_.layout.height) link(plan_.layout.down(y)).add(1, cycles(bits));
+            link(plan_.layout.row(y)).add(1, cycles(bits));
+            plan_.rows[std::size_t(y)].push_back(digest);
+        }
+        ++broadcasts_;
+        broadcast_cycles_ += cycles(bits);
+    }
+
+    void load(const Polygon& polygon) {
+        ++plan_.counts.polygons;
+        LoadItem item;
+        item.kind = Kind::polygon;
+        item.polygon = polygon;
+        work_ += costs_.geometry_polygon;
+        const int bits = int(polygon.vertices.size()) * bits_.vertex + bits_.polygon;
+        put_out(item, bits);
+        unit(Layout::precomputation).add(1, 0);
+        item.kind = Kind::trapeze;
+        for (const Trapeze& trapeze : precompute(polygon, arithmetic_)) {
+            ++plan_.counts.trapezes;
+            item.trapeze = trapeze;
+            item.intensities = CornerIntensities{};
+            if (picture_.display == Display::gouraud) item.intensities = shade_corners(trapeze, scene_);
+            plan_.trapezes.push_back(digest_of(item));
+            unit(Layout::precomputation).cycles += costs_.precomputation_trapeze;
+            link(Layout::trapezes).add(1, cycles(bits_.trapeze));
+            distribute(item, 1 + costs_.geometry_polygon + cycles(bits) + costs_.precomputation_trapeze);
+        }
+    }
+
+    /// From the top row down to the last one that has a part of the trapeze, which leaves precomputation in
+    /// cycle `way` at the earliest.
+    void distribute(const LoadItem& item, std::uint64_t way) {
+        const Layout& layout = plan_.layout;
+        const Trapeze& trapeze = item.trapeze;
+        const int first = trapeze.first_row(layout.height);
+        for (int y = 0; y < layout.height; ++y) {
+            if (y > 0) link(layout.down(y - 1)).add(1, cycles(bits_.trapeze));
+            const bool cuts = y >= first;
+            const std::uint64_t work = cuts ? costs_.distribution_span : costs_.distribution_pass;
+            unit(layout.distributor(y)).add(1, work);
+            way += cycles(bits_.trapeze) + work;
+            if (cuts) cut(item, y, way);
+            if (cuts && !trapeze.reaches_below(y)) break;
+        }
+    }
+
+    void cut(const LoadItem& from, int y, std::uint64_t way) {
+        const bool gouraud = picture_.display == Display::gouraud;
+        const auto span =
+            cut_span(from.trapeze, y, plan_.layout.width, arithmetic_, gouraud ? &from.intensities : nullptr);
+        if (!span) return;
+        ++plan_.counts.spans;
+        LoadItem item;
+        item.kind = Kind::span;
+        item.span = *span;
+        plan_.rows[std::size_t(y)].push_back(digest_of(item));
+        link(plan_.layout.row(y)).add(1, cycles(bits_.span));
+        const std::size_t row = std::size_t(y) * std::size_t(plan_.layout.width + 1);
+        ++voxels_begin_[row + std::size_t(span->x)];
+        ++spans_end_[row + std::size_t(span->last) + 1];
+        way += std::uint64_t(span->last + 1) * cycles(bits_.span) +
+               std::uint64_t(span->x) * costs_.load_forward +
+               std::uint64_t(span->last - span->x + 1) * costs_.load_voxel;
+        if (way > plan_.longest_way.cycles) {
+            plan_.longest_way = {"the way of a span of polygon " + std::to_string(span->polygon) +
+                                     " in row " + std::to_string(y),
+                                 way};
+        }
+    }
+
+    /// A span reaches every cell up to its last one and makes a voxel in those from its first one on.
+    void add_up_rows() {
+        const Layout& layout = plan_.layout;
+        for (int y = 0; y < layout.height; ++y) {
+            const std::size_t row = std::size_t(y) * std::size_t(layout.width + 1);
+            std::uint64_t reach = plan_.rows[std::size_t(y)].size() - broadcasts_;
+            std::uint64_t making = 0;
+            for (int x = 0; x < layout.width; ++x) {
+                const std::size_t at = row + std::size_t(x);
+                if (x > 0) {
+                    link(layout.east(x - 1, y)).add(reach - spans_end_[at], cycles(bits_.span));
+                    link(layout.east(x - 1, y)).messages += broadcasts_;
+                    link(layout.east(x - 1, y)).cycles += broadcast_cycles_;
+                }
+                reach -= spans_end_[at];
+                making = making + voxels_begin_[at] - spans_end_[at];
+                Need& cell = unit(layout.cell(x, y));
+                cell.add(making, costs_.load_voxel);
+                cell.add(reach - making + broadcasts_, costs_.load_forward);
+            }
+        }
+    }
+
+    const CellScene& scene_;
+    const PictureSettings& picture_;
+    const MachineSettings& machine_;
+    const CostTable& costs_;
+    Arithmetic arithmetic_;
+    MessageBits bits_;
+    LoadPlan plan_;
+    std::vector<std::uint64_t> voxels_begin_;  ///< spans by the cell that they begin in
+    std::vector<std::uint64_t> spans_end_;     ///< spans by the cell behind their last one
+    std::uint64_t work_ = 1;                   ///< of geometry, for its next message
+    std::uint64_t broadcasts_ = 0;
+    std::uint64_t broadcast_cycles_ = 0;
+};
+
+}  // namespace
+
+std::uint64_t digest_of(const LoadItem& item) {
+    Digest d;
+    d << int(item.kind);
+    switch (item.kind) {
+        case Kind::features:
+            d << item.object;
+            break;
+        case Kind::polygon:
+            add(d, item.polygon);
+            break;
+        case Kind::trapeze:
+            add(d, item.trapeze, item.intensities);
+            break;
+        case Kind::span:
+            add(d, item.span);
+            break;
+        case Kind::setup:
+        case Kind::end_of_scene:
+            break;
+    }
+    return d.value();
+}
+
+LoadPlan plan_loading(const CellScene& scene, const PictureSettings& picture,
+                      const MachineSettings& machine) {
+    return Planner(scene, picture, machine).run();
+}
+
+LoadPlan::Bound LoadPlan::busiest() const {
+    Bound most;
+    for (std::size_t i = 0; i < units.size(); ++i) {
+        if (units[i].cycles > most.cycles) most = {layout.unit_name(i), units[i].cycles};
+    }
+    for (std::size_t i = 0; i < links.size(); ++i) {
+        if (links[i].cycles > most.cycles) most = {layout.link_name(i), links[i].cycles};
+    }
+    return most;
+}
+
+LoadPlan::Bound LoadPlan::bound() const {
+    const Bound most = busiest();
+    return longest_way.cycles > most.cycles ? longest_way : most;
+}
+
+}  // namespace raycell::loading

@@ -1,0 +1,41 @@
+#include "testbench/loading/tap.hpp"
+
+namespace raycell::loading {
+
+void MachineTap::LinkTap::sent(const Link&, int, const Message& message, int cycles, Cycle now) {
+    listener_.sent(index_, *message.load, cycles, now);
+}
+
+void MachineTap::LinkTap::popped(const Link&, int, const Message& message, Cycle now) {
+    listener_.popped(index_, *message.load, now);
+}
+
+void MachineTap::listen(Link& link, std::size_t index) {
+    if (taps_.size() == taps_.capacity()) throw std::logic_error("more loading links than the layout has");
+    link.set_observer(&taps_.emplace_back(listener_, index));
+    links_.push_back(&link);
+}
+
+MachineTap::MachineTap(Machine& machine, const Layout& layout, LoadListener& listener) : listener_(listener) {
+    taps_.reserve(layout.links());  // links keep pointers to their taps
+    listen(machine.polygon_link(), Layout::polygons);
+    listen(machine.trapeze_link(), Layout::trapezes);
+    for (int y = 0; y < layout.height; ++y) {
+        listen(*machine.row_links()[std::size_t(y)], layout.row(y));
+        if (y + 1 < layout.height) listen(*machine.distribution().links()[std::size_t(y)], layout.down(y));
+    }
+    const Array& array = machine.array();
+    for (std::size_t i = 0; i < array.links().size(); ++i) {
+        if (array.side_of(i) != Side::east) continue;
+        const std::size_t sink = array.sink_of(i);  // row by row
+        const int x = int(sink % std::size_t(layout.width));
+        const int y = int(sink / std::size_t(layout.width));
+        listen(*array.links()[i], layout.east(x - 1, y));
+    }
+}
+
+MachineTap::~MachineTap() {
+    for (Link* link : links_) link->set_observer(nullptr);
+}
+
+}  // namespace raycell::loading

@@ -1,0 +1,134 @@
+// Follows every load message through the pipeline, over links and through units: checks what the design
+// promises of it, and adds up where the cycles went.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "cells/scheduler.hpp"
+#include "testbench/loading/faults.hpp"
+#include "testbench/loading/plan.hpp"
+
+namespace raycell::loading {
+
+/// Cycles for which a unit had finished a message and could not send it.
+struct OutputWait {
+    std::uint64_t full = 0;  ///< no room in the buffer at the far end
+    std::uint64_t busy = 0;  ///< room, but the wires carried another message
+};
+
+/// Where a unit's cycles went, from the start of loading to its last message. A distributor sends to the east
+/// and down at the same time, so its waits may overlap; `blocked` counts each cycle once.
+struct UnitUse {
+    std::uint64_t messages = 0;  ///< taken; of geometry: put out
+    std::uint64_t busy_cycles = 0;
+    std::uint64_t starved_cycles = 0;  ///< nothing in the input buffer, or only on the wires
+    std::uint64_t blocked_cycles = 0;
+    std::array<OutputWait, 2> waits;  ///< the only output, or east; down
+};
+
+struct LinkUse {
+    std::uint64_t sent = 0;
+    std::uint64_t delivered = 0;
+    std::uint64_t wire_cycles = 0;      ///< random stalls included
+    std::uint64_t occupied_cycles = 0;  ///< sum over messages of the cycles that they took up a place
+    int depth = 0;
+    int peak = 0;
+    Cycle first_arrival = never;
+    Cycle last_arrival = 0;
+};
+
+/// Told of every message that starts over a link and every one that leaves a buffer, cycle by cycle.
+class LoadListener {
+  public:
+    virtual ~LoadListener() = default;
+    virtual void sent(std::size_t link, const LoadItem& item, int cycles, Cycle now) = 0;
+    virtual void popped(std::size_t link, const LoadItem& item, Cycle now) = 0;
+};
+
+class LoadWatch : public LoadListener {
+  public:
+    /// Both must outlive it. `stage_link_depth`: of the two links before the distributors.
+    LoadWatch(const LoadPlan& plan, const MachineSettings& machine, int stage_link_depth);
+
+    void sent(std::size_t link, const LoadItem& item, int cycles, Cycle now) override;
+    void popped(std::size_t link, const LoadItem& item, Cycle now) override;
+    /// After a run that came to its end: is everything there, is nothing left?
+    void finish();
+
+    const std::vector<UnitUse>& units() const { return use_; }
+    const std::vector<LinkUse>& links() const { return link_use_; }
+
+    /// Messages come out of a link as they went in, pass a unit in the order in which they came, and leave a
+    /// cell or distributor as what was taken there; sources and viewer first, a cell knows the features of
+    /// every span's object, nothing follows the end-of-scene mark.
+    const Faults& order() const { return order_; }
+    /// Every unit and link handles the messages of the plan, no more and no fewer; geometry, precomputation
+    /// and distributors send them in its order and with its bits.
+    const Faults& content() const { return content_; }
+    /// What is sent arrives, and every cell drops what ends in it.
+    const Faults& conservation() const { return conservation_; }
+    /// A message moves in the first cycle in which its unit is done, the wires are free and there is room.
+    const Faults& promptness() const { return promptness_; }
+
+  private:
+    struct Held {
+        const LoadItem* item;
+        std::uint64_t ticket;  ///< its number in the order in which it began its way
+        Cycle sent;
+        Cycle arrival;
+        std::uint32_t work;  ///< cycles that it takes at the far end
+    };
+    struct LinkState {
+        std::vector<Held> held;   ///< oldest first
+        std::vector<Cycle> room;  ///< cycles of pops that no later message has made use of
+        Cycle wires_free = 0;
+        Cycle last_pop = never;
+        int popped_now = 0;  ///< in cycle last_pop
+        std::uint64_t next_ticket = 0;
+    };
+    struct UnitState {
+        Cycle begin = 1;  ///< first cycle in which it can take a message, or begin the next trapeze
+        Cycle ready = 0;  ///< when it is done with what it works on
+        Cycle last_send = 0;
+        bool works = false;              ///< distributor: on the oldest message of its input
+        const LoadItem* held = nullptr;  ///< cell: taken in `taken`, to be sent in the same cycle
+        std::uint64_t ticket = 0;
+        Cycle taken = never;
+        bool set_up = false;    ///< cell: sources and viewer are known
+        bool finished = false;  ///< cell: has seen the end-of-scene mark
+        std::uint32_t object = no_object;
+    };
+    static constexpr std::uint32_t no_object = ~std::uint32_t(0);
+
+    // Each returns the message's ticket.
+    std::uint64_t leave_geometry(Cycle now);
+    std::uint64_t leave_precomputation(const LoadItem& item, Cycle now);
+    std::uint64_t leave_distributor(std::size_t link, const LoadItem& item, Cycle now);
+    std::uint64_t leave_cell(std::size_t link, const LoadItem& item, Cycle now);
+    void leave(std::size_t link, std::size_t output, Cycle ready, Cycle now);
+    void begin_work(std::size_t unit, const Held& head);
+    void compare(std::size_t link, const std::vector<std::uint64_t>& planned, const LoadItem& item);
+    void take_into_precomputation(const Held& held, Cycle now);
+    void take_into_distributor(std::size_t unit, const Held& held, Cycle now);
+    void take_into_cell(std::size_t unit, const Held& held, Cycle now);
+    void latch(std::size_t unit, const LoadItem& item, Cycle now);
+    std::uint32_t work_at(std::size_t unit, const LoadItem& item) const;
+    std::string at(std::size_t link, Cycle now) const;
+    std::string in(std::size_t unit, Cycle now) const;
+
+    const LoadPlan& plan_;
+    const Layout& layout_;
+    const CostTable& costs_;
+    std::vector<LinkState> links_;
+    std::vector<UnitState> units_;
+    std::vector<LinkUse> link_use_;
+    std::vector<UnitUse> use_;
+    std::vector<std::uint64_t> dropped_;  ///< by row
+    Faults order_;
+    Faults content_;
+    Faults conservation_;
+    Faults promptness_;
+};
+
+}  // namespace raycell::loading
