@@ -31,6 +31,14 @@ struct TimeOutResult {
         0;  ///< cycles from the knot's forming to the first lasting alarm in one of its cells
 };
 
+/// Messages that are there when a run stops, counted where they stand. None if it completed.
+struct InFlight {
+    std::uint64_t rays = 0;  ///< in buffers, registers, slots, units and the exterior
+    std::uint64_t answers = 0;
+    std::uint64_t loads = 0;     ///< in the rows of cells
+    std::uint64_t upstream = 0;  ///< load messages in the stages before the rows
+};
+
 /// What a run of either engine tells about itself. Cycles are 0 for the untimed one.
 struct RunResult {
     Verdict verdict = Verdict::completed;
@@ -43,6 +51,7 @@ struct RunResult {
     StageStatistics distribution;
     StageStatistics exterior;
     Counters counters;
+    InFlight in_flight;
     StorageCounts storage;
     int ray_store_peak = 0;
     double ray_store_mean = 0;  ///< over all cells and the trace phase
@@ -105,7 +114,8 @@ class Machine : public sc_core::sc_module {
     void run_phase(Phase phase, RunResult& result);
     bool phase_complete() const;
     void judge(RunResult& result);
-    void check_conservation() const;
+    InFlight in_flight() const;
+    void check_conservation(const InFlight& there, bool completed) const;
     void collect(RunResult& result) const;
     void collect_time_outs(RunResult& result) const;
     RunResult::BufferUse buffer_use(const char* buffer_class, int index, Cycle cycles) const;
