@@ -26,6 +26,7 @@ struct TimeOutResult {
     std::uint64_t early_alarms = 0;  ///< in cells that locked later or in part, and that moved again
     std::uint64_t knot_cells = 0;    ///< that hold a node of a knot ...
     std::uint64_t knot_alarms = 0;   ///< ... and of them, those that give alarm and never move again
+    std::uint64_t missed_knots = 0;  ///< none of whose cells gives alarm for good
     std::uint64_t tail_alarms = 0;   ///< cells that only wait for a knot, give alarm and never move again
     std::int64_t first_alarm_delay =
         0;  ///< cycles from the knot's forming to the first lasting alarm in one of its cells
