@@ -43,10 +43,6 @@ class Sweep(Runner):
             return None
         return record if whole else None
 
-    def finished(self, runs):
-        found = {c: self.load(c) for c in runs}
-        return {c: record for c, record in found.items() if record}
-
     def make_all(self, runs, jobs):
         return self.make(runs, jobs, cost)
 

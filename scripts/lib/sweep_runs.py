@@ -63,7 +63,7 @@ class Cache:
 
 
 class Runner:
-    """Makes runs in parallel; a sweep says what one run is (`make_one`) and which are finished (`finished`)."""
+    """Makes runs in parallel; a sweep says what one run is (`make_one`) and whether it is finished (`load`)."""
 
     def __init__(self, cache):
         self.cache = cache
@@ -71,9 +71,14 @@ class Runner:
         self.guard = threading.Lock()
         self.children = set()
 
+    def load(self, run):
+        """The finished run's record, or None."""
+        raise NotImplementedError
+
     def finished(self, runs):
         """{run: record} of what is in the cache."""
-        raise NotImplementedError
+        found = {run: self.load(run) for run in runs}
+        return {run: record for run, record in found.items() if record}
 
     def make_one(self, run):
         """Makes a run; stores and returns its record."""
