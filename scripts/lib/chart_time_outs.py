@@ -14,8 +14,8 @@ def command_of(words):
                       "against the proof; writes tables and a chart of false alarms, misses and delay over the "
                       "time-out.", "a dozen tiny runs")
     add = command.parser.add_argument
-    add("--seeds", metavar="N", type=positive, default=design.SEEDS, help="traffics for each load and machine; default: "
-        "%(default)s")
+    add("--seeds", metavar="N", type=positive, default=design.SEEDS, help="traffics for each load and machine; "
+        "default: %(default)s")
     add("--program", type=pathlib.Path, help="the deadlock_tb to run; default: build/deadlock_tb, built first")
     command.read(words)
     return command

@@ -1,11 +1,6 @@
 """Makes the runs in which the time-outs are measured."""
-import dataclasses
-import json
-import shutil
-import time
-
 from chart_time_outs_design import TIME_OUTS, cost
-from sweep_runs import Cache, Failure, Runner, hash_of, is_number
+from sweep_runs import Cache, Failure, ReportRunner, hash_of
 
 
 def brief(report):
@@ -30,35 +25,19 @@ def brief(report):
             "stood_still": report["cycles"]["total"] - knot["formed"]}
 
 
-class Sweep(Runner):
+class Sweep(ReportRunner):
     def __init__(self, program, folder):
         super().__init__(Cache(folder / f"time_outs-{hash_of(program)}", "chart_time_outs"))
         self.program = program
 
-    def load(self, configuration):
-        """The finished run, or None; whatever is not the whole result of just this run counts as none."""
-        record = self.cache.read(configuration.label())
-        try:
-            whole = (record["configuration"] == dataclasses.asdict(configuration)
-                     and is_number(record["seconds"]) and len(record["report"]["false_alarms"]) == len(TIME_OUTS)
-                     and len(record["report"]["early_alarms"]) == len(TIME_OUTS))
-        except (KeyError, TypeError):
-            return None
-        return record if whole else None
+    def command(self, _):
+        return [str(self.program)]
+
+    def brief(self, report):
+        return brief(report)
+
+    def is_whole(self, _, record):
+        return all(len(record["report"][name]) == len(TIME_OUTS) for name in ["false_alarms", "early_alarms"])
 
     def make_all(self, runs, jobs):
         return self.make(runs, jobs, cost)
-
-    def make_one(self, configuration):
-        start = time.monotonic()
-        folder = self.cache.work / configuration.label()
-        folder.mkdir()
-        # Codes 3 and 4 are verdicts of a run, and the report says which.
-        self.execute([str(self.program), "-o", str(folder / "run"), "--quiet", *configuration.options()],
-                     codes=(0, 3, 4))
-        report = brief(json.loads((folder / "run.json").read_text()))
-        shutil.rmtree(folder)
-        record = {"configuration": dataclasses.asdict(configuration), "seconds": time.monotonic() - start,
-                  "report": report}
-        self.cache.write(configuration.label(), record)
-        return record

@@ -16,8 +16,8 @@ def command_of(words):
     add = command.parser.add_argument
     add("--scene", metavar="FILE", type=pathlib.Path, help="the scene beside the synthetic traffic; default: "
         "scenes/cornell.nff")
-    add("--limit", metavar="CYCLES", type=positive, default=design.SCENE_LIMIT, help="a scene's run is cut off after so "
-        "many, loading included; default: %(default)s")
+    add("--limit", metavar="CYCLES", type=positive, default=design.SCENE_LIMIT, help="a scene's run is cut off after "
+        "so many, loading included; default: %(default)s")
     add("--program-folder", metavar="FOLDER", type=pathlib.Path, help="the folder of raycell and deadlock_tb; default: "
         "build, where they are built first")
     command.read(words)
