@@ -84,4 +84,14 @@ StageStatistics Distribution::statistics() const {
     return sum;
 }
 
+std::size_t Distribution::holds() const {
+    std::size_t sum = 0;
+    for (const auto& link : links_) sum += std::size_t(link->occupancy(0));
+    for (const auto& row : rows_) {
+        sum += row->holds();
+        sum -= row->works_on_what_it_passed_on() ? 1 : 0;
+    }
+    return sum;
+}
+
 }  // namespace raycell

@@ -19,6 +19,11 @@ class RowDistributor : public Stage {
     sc_core::sc_port<LinkOut> east;  ///< into the row's first cell
     sc_core::sc_port<LinkOut, 1, sc_core::SC_ZERO_OR_MORE_BOUND> down;  ///< to the row below
 
+    /// Load messages made for the row and not yet injected.
+    std::size_t holds() const { return to_row_ ? 1 : 0; }
+    /// Whether its message stands in two links: passed on, and not yet taken from the input.
+    bool works_on_what_it_passed_on() const { return item_ && passed_on_; }
+
   private:
     Cycle step(Cycle now) override;
     void take(LoadItem& item, Cycle now);
@@ -38,6 +43,8 @@ class Distribution : public sc_core::sc_module {
     RowDistributor& row(int y) { return *rows_[std::size_t(y)]; }
     const RowDistributor& row(int y) const { return *rows_[std::size_t(y)]; }
     StageStatistics statistics() const;
+    /// Load messages in the column and in no row of cells.
+    std::size_t holds() const;
     /// From each row to the row below.
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
 

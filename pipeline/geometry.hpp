@@ -13,6 +13,8 @@ class Geometry : public Stage {
 
     /// Begins with the scene in the next cycle.
     void start() { environment().scheduler.wake(*this, environment().scheduler.now() + 1); }
+    /// Load messages in no link.
+    std::size_t holds() const { return item_ ? 1 : 0; }
 
   private:
     Cycle step(Cycle now) override;

@@ -197,7 +197,8 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
         activity_.finish(scheduler_.now() + 1, environment_.counters);
         result.activity = activity_.activity();
     }
-    if (going()) check_conservation();
+    result.in_flight = in_flight();
+    check_conservation(result.in_flight, going());
     collect(result);
     if (going() && result.storage.overflowed > 0) result.verdict = Verdict::capacity;
     result.picture = picture_;
@@ -205,21 +206,38 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     return result;
 }
 
-void Machine::check_conservation() const {
+InFlight Machine::in_flight() const {
+    const MessagePools& pools = environment_.pools;
+    InFlight there;
+    there.rays = pools.rays.in_use();
+    if (exterior_)
+        there.rays += std::uint64_t(exterior_->working());  // those left the pool when it took them
+    there.answers = pools.answers.in_use();
+    there.upstream = geometry_.holds() + std::uint64_t(to_precomputation_.occupancy(0)) +
+                     precomputation_.holds() + std::uint64_t(to_distribution_.occupancy(0)) +
+                     distribution_.holds();
+    there.loads = pools.loads.in_use() - there.upstream;
+    return there;
+}
+
+/// What was sent has come home or is still there, however the run ended.
+void Machine::check_conservation(const InFlight& there, bool completed) const {
     const Counters& c = environment_.counters;
-    const bool rays = c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed;
-    const bool answers = c.answers_sent == c.answers_delivered;
-    const bool loads = c.loads_sent == c.loads_delivered;
-    const bool nothing_left = environment_.pools.rays.in_use() == 0 &&
-                              environment_.pools.answers.in_use() == 0 &&
-                              environment_.pools.loads.in_use() == 0;
-    if (rays && answers && loads && nothing_left) return;
-    throw std::logic_error(
-        "internal error: messages are not conserved: rays " + std::to_string(c.rays_sent) + " sent, " +
-        std::to_string(c.rays_answered) + " answered, " + std::to_string(c.rays_silent) + " silent, " +
-        std::to_string(c.rays_destroyed) + " destroyed; answers " + std::to_string(c.answers_sent) +
-        " sent, " + std::to_string(c.answers_delivered) + " delivered; load messages " +
-        std::to_string(c.loads_sent) + " sent, " + std::to_string(c.loads_delivered) + " delivered");
+    const bool rays = c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed + there.rays;
+    const bool answers = c.answers_sent == c.answers_delivered + there.answers;
+    const bool loads = c.loads_sent == c.loads_delivered + there.loads;
+    const bool nothing_left = there.rays + there.answers + there.loads + there.upstream == 0;
+    if (rays && answers && loads && (nothing_left || !completed)) return;
+    const auto text = [](std::uint64_t count, const char* what) {
+        return std::to_string(count) + " " + what;
+    };
+    throw std::logic_error("internal error: messages are not conserved: rays " + text(c.rays_sent, "sent, ") +
+                           text(c.rays_answered, "answered, ") + text(c.rays_silent, "silent, ") +
+                           text(c.rays_destroyed, "destroyed, ") + text(there.rays, "in flight; answers ") +
+                           text(c.answers_sent, "sent, ") + text(c.answers_delivered, "delivered, ") +
+                           text(there.answers, "in flight; load messages ") + text(c.loads_sent, "sent, ") +
+                           text(c.loads_delivered, "delivered, ") + text(there.loads, "in flight, ") +
+                           text(there.upstream, "before the rows"));
 }
 
 void Machine::collect(RunResult& result) const {

@@ -26,9 +26,18 @@ struct TimeOutResult {
     std::uint64_t early_alarms = 0;  ///< in cells that locked later or in part, and that moved again
     std::uint64_t knot_cells = 0;    ///< that hold a node of a knot ...
     std::uint64_t knot_alarms = 0;   ///< ... and of them, those that give alarm and never move again
+    std::uint64_t missed_knots = 0;  ///< none of whose cells gives alarm for good
     std::uint64_t tail_alarms = 0;   ///< cells that only wait for a knot, give alarm and never move again
     std::int64_t first_alarm_delay =
         0;  ///< cycles from the knot's forming to the first lasting alarm in one of its cells
+};
+
+/// Messages that are there when a run stops, counted where they stand. None if it completed.
+struct InFlight {
+    std::uint64_t rays = 0;  ///< in buffers, registers, slots, units and the exterior
+    std::uint64_t answers = 0;
+    std::uint64_t loads = 0;     ///< in the rows of cells
+    std::uint64_t upstream = 0;  ///< load messages in the stages before the rows
 };
 
 /// What a run of either engine tells about itself. Cycles are 0 for the untimed one.
@@ -43,6 +52,7 @@ struct RunResult {
     StageStatistics distribution;
     StageStatistics exterior;
     Counters counters;
+    InFlight in_flight;
     StorageCounts storage;
     int ray_store_peak = 0;
     double ray_store_mean = 0;  ///< over all cells and the trace phase
@@ -115,7 +125,8 @@ class Machine : public sc_core::sc_module {
     void run_phase(Phase phase, RunResult& result);
     bool phase_complete() const;
     void judge(RunResult& result);
-    void check_conservation() const;
+    InFlight in_flight() const;
+    void check_conservation(const InFlight& there, bool completed) const;
     void collect(RunResult& result) const;
     void collect_time_outs(RunResult& result) const;
     RunResult::BufferUse buffer_use(const char* buffer_class, int index, Cycle cycles) const;

@@ -162,9 +162,19 @@ void Machine::collect_time_outs(RunResult& result) const {
         if (node.state == WaitGraph::State::knot) state = 2;
         if (node.state == WaitGraph::State::tail) state = std::max(state, 1);
     }
+    const auto seen = [&](WaitGraph::Index i) {
+        const WaitGraph::Node& node = result.waits.nodes()[i];
+        return array_.cell(node.x, node.y).cell().time_out().since() != never;
+    };
+    const auto& knots = result.waits.knots();
+    const auto missed = std::count_if(knots.begin(), knots.end(), [&](const auto& knot) {
+        return std::none_of(knot.begin(), knot.end(), seen);
+    });
     for (int log = TimeOut::least_log; log <= TimeOut::most_log; ++log) {
         TimeOutResult sum;
         sum.cycles = Cycle(1) << log;
+        // Where nothing moves any more, a wait that goes on lasts for ever: longer than any time-out.
+        sum.missed_knots = std::uint64_t(missed);
         Cycle first = never;
         for (std::size_t i = 0; i < locked.size(); ++i) {
             const TimeOut& time_out = array_.cells()[i]->cell().time_out();

@@ -14,6 +14,9 @@ class Precomputation : public Stage {
     sc_core::sc_port<LinkIn> in;
     sc_core::sc_port<LinkOut> out;
 
+    /// Load messages in no link.
+    std::size_t holds() const { return item_ ? 1 : 0; }
+
   private:
     Cycle step(Cycle now) override;
     void take(LoadItem& item);

@@ -1,11 +1,8 @@
 """The rows of accuracy.csv: written from the runs' results, read back for tables and charts."""
-import csv
 import dataclasses
 
 from chart_accuracy_design import FRONT_CELLS, FULL_CELLS, Configuration
-
-FACTORS = [field.name for field in dataclasses.fields(Configuration)]
-COUNTS = ["cells", "word_bits", "depth", "reciprocal_table", "root_table", "power_table"]
+from sweep_rows import SweepRow, read_csv, write_csv
 
 
 def row_of(configuration, record, exact_record):
@@ -30,23 +27,12 @@ def row_of(configuration, record, exact_record):
 def write(path, runs, records):
     """Rows in the order of the design; a run without its exact machine, which failed, has none."""
     lines = [row_of(c, records[c], records[c.exact()]) for c in runs if c in records and c.exact() in records]
-    with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, lines[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(lines)
+    write_csv(path, lines)
 
 
-class Row:
-    """A line read back: .configuration, and the measured columns as numbers, None where empty."""
-
-    def __init__(self, line):
-        factors = {name: int(line[name]) if name in COUNTS else line[name] for name in FACTORS}
-        self.configuration = Configuration(**factors)
-        for name in line.keys() - set(FACTORS):
-            value = line[name]
-            if name not in ("engine", "verdict", "image_hash", "schedule_hash"):
-                value = float(value) if value != "" else None
-            setattr(self, name, value)
+class Row(SweepRow):
+    Configuration = Configuration
+    TEXTS = ["engine", "verdict", "image_hash", "schedule_hash"]
 
     @property
     def timed(self):
@@ -62,8 +48,7 @@ class Results:
     """All rows, found by their configuration; the sizes and scenes are those that the sweep ran."""
 
     def __init__(self, path):
-        with open(path, newline="") as file:
-            rows = [Row(line) for line in csv.DictReader(file)]
+        rows = read_csv(path, Row)
         self.rows = {row.configuration: row for row in rows}
         timed = [row.configuration for row in rows if row.timed]
         words = [row.configuration for row in rows if row.configuration.arithmetic == "fixed"]

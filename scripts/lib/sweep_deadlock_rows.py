@@ -1,15 +1,12 @@
 """The rows of deadlock.csv: written from the runs' results, read back for tables and charts."""
-import csv
 import dataclasses
 import statistics
 
 from sweep_deadlock_design import NETWORKS, Configuration
+from sweep_rows import SweepRow, read_csv, write_csv
 
-FACTORS = [field.name for field in dataclasses.fields(Configuration)]
-COUNTS = ["cells", "buffer", "ray_store", "seed", "max_cycles"]
 CLASSES = ["all", "ray", "ray_east", "ray_west", "ray_east_south", "ray_west_south", "ray_east_north", "ray_west_north",
            "answer"]
-TEXTS = ["verdict", "image_hash", "schedule_hash"]
 
 
 def row_of(configuration, record):
@@ -36,23 +33,12 @@ def row_of(configuration, record):
 def write(path, runs, records):
     """Rows in the order of the design."""
     lines = [row_of(c, records[c]) for c in runs if c in records]
-    with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, lines[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(lines)
+    write_csv(path, lines)
 
 
-class Row:
-    """A line read back: .configuration, and the measured columns as numbers, None where empty."""
-
-    def __init__(self, line):
-        factors = {name: int(line[name]) if name in COUNTS else line[name] for name in FACTORS}
-        self.configuration = Configuration(**factors)
-        for name in line.keys() - set(FACTORS):
-            value = line[name]
-            if name not in TEXTS:
-                value = float(value) if value != "" else None
-            setattr(self, name, value)
+class Row(SweepRow):
+    Configuration = Configuration
+    TEXTS = ["verdict", "image_hash", "schedule_hash"]
 
     @property
     def completed(self):
@@ -107,8 +93,7 @@ class Results:
     """All rows, grouped over their seeds; the loads and sizes are those that the sweep ran."""
 
     def __init__(self, path):
-        with open(path, newline="") as file:
-            self.rows = [Row(line) for line in csv.DictReader(file)]
+        self.rows = read_csv(path, Row)
         groups = {}
         for row in self.rows:
             groups.setdefault(dataclasses.replace(row.configuration, seed=0), []).append(row)

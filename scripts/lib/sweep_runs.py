@@ -1,5 +1,6 @@
 """What sweeps share: runs on all cores, each finished one kept, so that a stopped sweep goes on where it was."""
 import concurrent.futures
+import dataclasses
 import fcntl
 import hashlib
 import json
@@ -63,7 +64,7 @@ class Cache:
 
 
 class Runner:
-    """Makes runs in parallel; a sweep says what one run is (`make_one`) and which are finished (`finished`)."""
+    """Makes runs in parallel; a sweep says what one run is (`make_one`) and whether it is finished (`load`)."""
 
     def __init__(self, cache):
         self.cache = cache
@@ -71,9 +72,14 @@ class Runner:
         self.guard = threading.Lock()
         self.children = set()
 
+    def load(self, run):
+        """The finished run's record, or None."""
+        raise NotImplementedError
+
     def finished(self, runs):
         """{run: record} of what is in the cache."""
-        raise NotImplementedError
+        found = {run: self.load(run) for run in runs}
+        return {run: record for run, record in found.items() if record}
 
     def make_one(self, run):
         """Makes a run; stores and returns its record."""
@@ -142,6 +148,49 @@ class Runner:
             last = errors.strip().splitlines()[-1:] or ["no message"]
             raise Failure(f"exit code {child.returncode}: {last[0]}")
         return output
+
+
+class ReportRunner(Runner):
+    """Each run is one program that writes a JSON, of which a brief report is kept."""
+
+    def command(self, run):
+        """Program and arguments; the prefix of its files, the run's own options and --quiet come after them."""
+        raise NotImplementedError
+
+    def brief(self, report):
+        """What is kept of the JSON."""
+        raise NotImplementedError
+
+    def is_whole(self, run, record):
+        """Whether the record is the whole result of the run; what is missing in it may raise KeyError or TypeError."""
+        raise NotImplementedError
+
+    def more(self, _run):
+        """What else belongs into the record."""
+        return {}
+
+    def load(self, run):
+        """The finished run, or None; whatever is not the whole result of just this run counts as none."""
+        record = self.cache.read(run.label())
+        try:
+            whole = (record["configuration"] == dataclasses.asdict(run) and is_number(record["seconds"])
+                     and self.is_whole(run, record))
+        except (KeyError, TypeError):
+            return None
+        return record if whole else None
+
+    def make_one(self, run):
+        start = time.monotonic()
+        folder = self.cache.work / run.label()
+        folder.mkdir()
+        # Codes 3 and 4 are verdicts of a run, and the report says which.
+        self.execute([*self.command(run), "-o", str(folder / "run"), "--quiet", *run.options()], codes=(0, 3, 4))
+        report = self.brief(json.loads((folder / "run.json").read_text()))
+        shutil.rmtree(folder)
+        record = {"configuration": dataclasses.asdict(run), "seconds": time.monotonic() - start, **self.more(run),
+                  "report": report}
+        self.cache.write(run.label(), record)
+        return record
 
 
 class Progress:

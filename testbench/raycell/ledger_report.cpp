@@ -55,6 +55,7 @@ Json time_outs_json(const RunResult& result) {
         if (each.knot_cells > 0) {
             json["knot_cells"] = each.knot_cells;
             json["knot_alarms"] = each.knot_alarms;
+            json["missed_knots"] = each.missed_knots;
             json["tail_alarms"] = each.tail_alarms;
             if (each.knot_alarms > 0) json["first_alarm_delay"] = each.first_alarm_delay;
         }

@@ -104,13 +104,19 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                     {"refracted", c.rays.refracted}, {"shadow", c.rays.shadow},
                     {"precast", c.rays.precast},     {"lost", c.rays.lost},
                     {"exterior", c.rays.exterior}};
-    json["messages"] = {{"rays",
-                         {{"sent", c.rays_sent},
-                          {"answered", c.rays_answered},
-                          {"silent", c.rays_silent},
-                          {"destroyed", c.rays_destroyed}}},
-                        {"answers", {{"sent", c.answers_sent}, {"delivered", c.answers_delivered}}},
-                        {"load", {{"sent", c.loads_sent}, {"delivered", c.loads_delivered}}}};
+    json["messages"] = {
+        {"rays",
+         {{"sent", c.rays_sent},
+          {"answered", c.rays_answered},
+          {"silent", c.rays_silent},
+          {"destroyed", c.rays_destroyed},
+          {"in_flight", result.in_flight.rays}}},
+        {"answers",
+         {{"sent", c.answers_sent},
+          {"delivered", c.answers_delivered},
+          {"in_flight", result.in_flight.answers}}},
+        {"load",
+         {{"sent", c.loads_sent}, {"delivered", c.loads_delivered}, {"in_flight", result.in_flight.loads}}}};
     json["voxels"] = {{"stored", storage.voxels},
                       {"max_per_cell", storage.max_voxels},
                       {"mean_per_occupied_cell",

@@ -131,11 +131,24 @@ TEST(TimeOut, AlarmsInACellOfEveryKnotOfBuffersWhatIsProvedLocked) {
     for (const TimeOutResult& each : stuck.result.time_outs) {
         EXPECT_EQ(each.knot_cells, stuck.result.knot_cells.size());
         EXPECT_EQ(each.knot_alarms, each.knot_cells) << "a buffer of the ring waits in each of its cells";
+        EXPECT_EQ(each.missed_knots, 0u);
         EXPECT_LE(each.false_alarms, false_before) << "longer time-outs are more patient";
         EXPECT_LE(each.first_alarm_delay, std::int64_t(each.cycles));
         false_before = each.false_alarms;
     }
     EXPECT_GT(stuck.result.time_outs.front().false_alarms, 0u) << "16 cycles are too hasty";
+}
+
+TEST(TimeOut, MissesCellsInWhichOnlyASlotWaitsButNoKnotOfFullRayStores) {
+    Stuck stuck("still_life", [](PictureSettings&, MachineSettings& m) {
+        m.ray_store = 4;
+        m.recovery = Recovery::none;
+    });
+    ASSERT_TRUE(stuck.result.waits.deadlocked());
+    for (const TimeOutResult& each : stuck.result.time_outs) {
+        EXPECT_LT(each.knot_alarms, each.knot_cells) << "a slot that waits is no message that can't move on";
+        EXPECT_EQ(each.missed_knots, 0u) << "its child is somewhere";
+    }
 }
 
 TEST(Ledger, CountsWhatWasDestroyedWhereAndWhose) {

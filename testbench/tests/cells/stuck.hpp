@@ -23,12 +23,12 @@ struct Stuck {
     void expect_conserved() {
         const Counters& c = result.counters;
         const std::uint64_t open = c.rays_sent - c.rays_answered - c.rays_silent - c.rays_destroyed;
-        const std::uint64_t there = timed->environment().pools.rays.in_use();
-        EXPECT_GE(open, there);
-        EXPECT_LE(open,
-                  there + std::uint64_t(machine.exterior_processors));  // those hold answers that can't leave
+        const std::uint64_t in_the_array = timed->environment().pools.rays.in_use();
+        EXPECT_EQ(open, result.in_flight.rays);
+        EXPECT_GE(open, in_the_array);
+        EXPECT_LE(open, in_the_array + std::uint64_t(machine.exterior_processors));
         EXPECT_EQ(c.answers_sent - c.answers_delivered, timed->environment().pools.answers.in_use());
-        EXPECT_EQ(c.loads_sent, c.loads_delivered);
+        EXPECT_EQ(c.loads_sent - c.loads_delivered, result.in_flight.loads);
     }
     void expect_report() {
         ASSERT_FALSE(result.report.empty());

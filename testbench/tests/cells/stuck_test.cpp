@@ -40,6 +40,8 @@ TEST(TimedVerdict, OfOneSlotThatATreeComesBackToIsLivelock) {
     EXPECT_EQ(name_of(stuck.result.verdict), std::string("livelock"));
     EXPECT_FALSE(stuck.result.report.empty());
     EXPECT_GT(stuck.result.counters.rays_destroyed, 0u);
+    EXPECT_GT(stuck.result.in_flight.rays, 0u);
+    stuck.expect_conserved();
 }
 
 TEST(TimedVerdict, WithHalvesReservedSlotsAndOnePerGenerationIsCompletedWithThatPicture) {
@@ -56,6 +58,8 @@ TEST(TimedVerdict, BeyondTheLimitOfCyclesIsCycleLimit) {
     EXPECT_EQ(name_of(stopped.result.verdict), std::string("cycle_limit"));
     EXPECT_LE(stopped.timed->environment().scheduler.now(), 300u);
     EXPECT_EQ(stopped.result.trace_cycles, 0u);
+    EXPECT_GT(stopped.result.in_flight.loads, 0u);
+    stopped.expect_conserved();
 }
 
 TEST(TimedVerdict, BeyondTheLimitOfCyclesWhileTracingIsCycleLimit) {
@@ -70,6 +74,8 @@ TEST(TimedVerdict, BeyondTheLimitOfCyclesWhileTracingIsCycleLimit) {
     EXPECT_EQ(name_of(stopped.result.verdict), std::string("cycle_limit"));
     EXPECT_EQ(stopped.result.counters.pixels_done, 0u);
     EXPECT_LE(stopped.timed->environment().scheduler.now(), 1000000u);
+    EXPECT_EQ(stopped.result.in_flight.rays, 64u) << "every cell's own";
+    stopped.expect_conserved();
 }
 
 TEST(TimedVerdict, ALimitThatIsJustLongEnoughIsNoLimit) {

@@ -1,69 +1,28 @@
 // What cells count about themselves: waiting by cause, to the cycle, however often a cell is woken.
-#include "../truth/hand_made.hpp"
 #include "cells/observer_list.hpp"
-#include "elaboration.hpp"
+#include "lone_cell.hpp"
 #include "testbench/raycell/ray_watch.hpp"
 
 namespace raycell {
 namespace {
 
-/// An empty cell whose neighbours are played by the test.
-struct EmptyCell {
-    EmptyCell() : scene(hand_made::cube(3, 3, 100)), picture(3, 3) {
-        expect_first_elaboration();
-        scene.frame.depth_levels = 10;
-        settings.width = settings.height = 3;
-        settings.exterior = ExteriorMode::none;
-        environment = std::make_unique<Environment>(scene, settings, machine, scheduler, picture);
-        environment->phase = Phase::trace;
-        cell = std::make_unique<CellModule>("cell", *environment, 1, 1);
-        for (int side = 0; side < side_count; ++side) {
-            for (auto* links : {&in, &out}) {
-                links->push_back(
-                    std::make_unique<Link>(scheduler, environment->classes.count, machine.buffer_depth));
-            }
-            in.back()->connect_sink(*cell);
-            out.back()->connect_source(*cell);
-            cell->in[std::size_t(side)].bind(*in.back());
-            cell->out[std::size_t(side)].bind(*out.back());
-        }
-    }
-    /// Sends a ray over a link, visible in the next cycle.
-    void send_ray(Link& link, const dvec3& position, const dvec3& direction, int cycles = 1) {
-        RayPacket* packet = environment->pools.rays.take();
-        packet->ray.position = position;
-        set_direction(packet->ray, direction, environment->context.arithmetic);
-        link.send(environment->classes.ray(packet->ray), Message(packet), cycles);
-    }
+/// An empty cell.
+struct EmptyCell : LoneCell {
     void send_answer(Link& link, int home_x, int cycles = 1) {
-        Answer* answer = environment->pools.answers.take();
-        answer->home_x = std::uint16_t(home_x);
-        answer->home_y = 1;
-        link.send(environment->classes.answer, Message(answer), cycles);
+        Answer answer;
+        answer.home_x = std::uint16_t(home_x);
+        answer.home_y = 1;
+        send(link, answer, cycles);
     }
-    /// Calls `script` in each cycle up to `cycles`; with `restless`, the cell is woken in each of them too.
+    /// What the cell counted; with `restless`, it is woken in each cycle.
     CellStatistics run(Cycle cycles, bool restless, const std::function<void(Cycle)>& script) {
-        Actor actor("actor", scheduler, [&](Cycle now) {
+        LoneCell::run(cycles, [&](Cycle now) {
             script(now);
             if (restless) scheduler.wake(*cell, now + 1);
-            return now < cycles ? now + 1 : never;
         });
-        scheduler.wake(actor, 1);
-        sc_core::sc_start();
         return cell->cell().statistics(scheduler.now());
     }
-    Link& east_out() { return *out[std::size_t(Side::east)]; }
-    Link& from(Side side) { return *in[std::size_t(side)]; }
-
-    Scheduler scheduler{"scheduler", sc_core::sc_time(50, sc_core::SC_NS)};
-    CellScene scene;
-    PictureSettings settings;
-    MachineSettings machine;
-    Picture picture;
-    std::unique_ptr<Environment> environment;
-    std::unique_ptr<CellModule> cell;
-    std::vector<std::unique_ptr<Link>> in;
-    std::vector<std::unique_ptr<Link>> out;
+    Link& east_out() { return towards(Side::east); }
 };
 
 std::uint64_t cycles_of(const CellStatistics& s, Stall cause) { return s.stalls[std::size_t(cause)]; }
@@ -74,8 +33,7 @@ std::uint64_t all_cycles(const CellStatistics& s) {
     return sum;
 }
 
-const dvec3 west_edge{0, 0.5, 5};
-const dvec3 eastwards{1, 0, 0};
+const Ray eastwards = lone_ray({0, 0.5, 5}, {1, 0, 0});
 
 /// A ray is decided in cycle 6; the next buffer has room from cycle 51 on; an answer takes the wires from 40
 /// to 70.
@@ -84,8 +42,8 @@ void full_then_busy(bool restless) {
     const int index = 0;  // half: east
     const CellStatistics s = empty.run(100, restless, [&](Cycle now) {
         if (now == 1) {
-            empty.send_ray(empty.east_out(), west_edge, eastwards);
-            empty.send_ray(empty.from(Side::west), west_edge, eastwards);
+            empty.send(empty.east_out(), eastwards);
+            empty.send(empty.from(Side::west), eastwards);
         }
         if (now == 40) empty.send_answer(empty.east_out(), 2, 30);
         if (now == 50) empty.east_out().pop(index);
@@ -106,8 +64,8 @@ TEST(CellWaiting, ForRoomThatNeverComesCountsUpToTheEnd) {
     EmptyCell empty;
     const CellStatistics s = empty.run(100, false, [&](Cycle now) {
         if (now != 1) return;
-        empty.send_ray(empty.east_out(), west_edge, eastwards);
-        empty.send_ray(empty.from(Side::west), west_edge, eastwards);
+        empty.send(empty.east_out(), eastwards);
+        empty.send(empty.from(Side::west), eastwards);
     });
     EXPECT_EQ(empty.scheduler.now(), 100u);
     EXPECT_EQ(cycles_of(s, Stall::output_full), 100u - 6u);
@@ -119,8 +77,8 @@ TEST(CellWaiting, OfTwoRaysTheSecondWaitsForTheFirstsTest) {
     EmptyCell empty;
     const CellStatistics s = empty.run(100, false, [&](Cycle now) {
         if (now != 1) return;
-        empty.send_ray(empty.from(Side::west), west_edge, eastwards);
-        empty.send_ray(empty.from(Side::south), {0.5, 1, 5}, {0, -1, 0});
+        empty.send(empty.from(Side::west), eastwards);
+        empty.send(empty.from(Side::south), lone_ray({0.5, 1, 5}, {0, -1, 0}));
     });
     EXPECT_EQ(cycles_of(s, Stall::traversal), 4u);
     EXPECT_EQ(all_cycles(s), 4u);
@@ -145,7 +103,7 @@ TEST(CellWaiting, AnAnswerWaitsForRoomFromItsRoutingOn) {
 TEST(CellWaiting, AFreeWayIsNoWaiting) {
     EmptyCell empty;
     const CellStatistics s = empty.run(100, true, [&](Cycle now) {
-        if (now == 1) empty.send_ray(empty.from(Side::west), west_edge, eastwards);
+        if (now == 1) empty.send(empty.from(Side::west), eastwards);
         if (now == 1) empty.send_answer(empty.from(Side::south), 0);
     });
     EXPECT_EQ(all_cycles(s), 0u);

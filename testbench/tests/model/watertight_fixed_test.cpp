@@ -10,8 +10,6 @@ using leaks::Shot;
 using property::Random;
 using shapes::Closed;
 
-constexpr HitTest watertight_rungs[] = {HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge};
-
 PictureSettings words_of(const CellScene& scene, HitTest rung, int word_bits, Rounding rounding) {
     PictureSettings settings = shapes::settings_for(scene, rung, Numbers::fixed);
     settings.numbers.word_bits = word_bits;
@@ -19,30 +17,19 @@ PictureSettings words_of(const CellScene& scene, HitTest rung, int word_bits, Ro
     return settings;
 }
 
-struct Words {
-    int bits;
-    Rounding rounding;
-};
-constexpr Words closed_words[] = {{20, Rounding::nearest}, {20, Rounding::truncate}, {16, Rounding::nearest}};
-
-using Shoot = std::function<Score(const Closed&, const PictureSettings&, Random&)>;
-
-void expect_no_leak(const std::function<Closed(Random&)>& make, std::uint64_t first_seed, int surfaces,
-                    const Shoot& shoot) {
-    for (const std::uint64_t seed : property::seeds(first_seed, surfaces)) {
-        Random shape(seed);
-        const Closed closed = make(shape);
-        for (const Words& words : closed_words) {
-            for (const HitTest rung : watertight_rungs) {
-                Random random(seed);
-                const Score score =
-                    shoot(closed, words_of(closed.scene, rung, words.bits, words.rounding), random);
-                EXPECT_EQ(score.leaks, 0)
-                    << "of " << score.rays << " rays at rung " << int(rung) << " in " << words.bits
-                    << " bits; the first " << score.first << "; " << property::rerun(seed);
-            }
-        }
+std::vector<PictureSettings> in_closed_words(const CellScene& scene) {
+    std::vector<PictureSettings> variants;
+    for (const HitTest rung : leaks::watertight_rungs) {
+        variants.push_back(words_of(scene, rung, 20, Rounding::nearest));
+        variants.push_back(words_of(scene, rung, 20, Rounding::truncate));
+        variants.push_back(words_of(scene, rung, 16, Rounding::nearest));
     }
+    return variants;
+}
+
+void expect_no_leak(const leaks::Make& make, std::uint64_t first_seed, int surfaces,
+                    const leaks::Shoot& shoot) {
+    leaks::expect_no_leak(make, first_seed, surfaces, in_closed_words, shoot);
 }
 
 Score anyhow(const Closed& closed, const PictureSettings& settings, Random& random) {
@@ -178,43 +165,8 @@ TEST(WatertightWords, AnEdgeIsOpenForTheLastBitsOfItsPlanesOverItsAngleAndNoFart
     }
 }
 
-/// Rays that bounce inside a closed room, sent as the machine sends its reflected rays.
 TEST(WatertightWords, NoReflectedRayLeavesAClosedRoom) {
-    int bounces = 0;
-    for (const std::uint64_t seed : property::seeds(8000, 12)) {
-        Random shape(seed);
-        Closed closed = shapes::room(shape);
-        closed.scene.objects[0] = hand_made::mirror(1);
-        PictureSettings settings = words_of(closed.scene, HitTest::edge, 20, Rounding::nearest);
-        settings.max_depth = 62;
-        const Context context(closed.scene, settings);
-        const auto cells = load_array(closed.scene, settings, context.arithmetic);
-        Random random(seed);
-        for (int i = 0; i < 200; ++i) {
-            int x = 0;
-            int y = 0;
-            Ray ray = walker::ray_at(context, closed.inside(random), shapes::sloped_direction(random), x, y);
-            for (int bounce = 0; bounce < 10; ++bounce) {
-                const auto found = walker::walk(cells, context, ray, x, y);
-                ASSERT_TRUE(found) << "bounce " << bounce << " of ray " << i << ": from ("
-                                   << x + ray.position.x << ", " << y + ray.position.y << ", "
-                                   << ray.position.z << ") along (" << ray.direction.x << ", "
-                                   << ray.direction.y << ", " << ray.direction.z << "); "
-                                   << property::rerun(seed);
-                x = found->x;
-                y = found->y;
-                const CellStore& store =
-                    cells[std::size_t(y) * std::size_t(closed.scene.frame.width) + std::size_t(x)];
-                const HitSetup setup = set_up_hit(context, store, found->ray, found->hit, x, y);
-                ASSERT_TRUE(setup.reflects);
-                ray = reflected_ray(context, store, found->ray, found->hit, setup, x, y);
-                ++bounces;
-            }
-        }
-    }
-    if (property::seeds(0, 2).size() > 1) {
-        EXPECT_GT(bounces, 1900);
-    }
+    leaks::expect_no_reflected_ray_leaves_a_room(Numbers::fixed);
 }
 
 }  // namespace

@@ -8,8 +8,6 @@ using leaks::Score;
 using property::Random;
 using shapes::Closed;
 
-constexpr HitTest watertight_rungs[] = {HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge};
-
 PictureSettings settings_for(const CellScene& scene, HitTest rung) {
     return shapes::settings_for(scene, rung, Numbers::exact);
 }
@@ -18,17 +16,17 @@ Score shoot_at(const Closed& closed, HitTest rung, int rays, Random& random) {
     return leaks::shoot_at(closed, settings_for(closed.scene, rung), rays, random);
 }
 
-void expect_no_leak(Closed (*make)(Random&), std::uint64_t first_seed, int surfaces, int rays) {
-    for (const std::uint64_t seed : property::seeds(first_seed, surfaces)) {
-        Random shape(seed);
-        const Closed closed = make(shape);
-        for (const HitTest rung : watertight_rungs) {
-            Random random(seed);
-            const Score score = shoot_at(closed, rung, rays, random);
-            EXPECT_EQ(score.leaks, 0) << "of " << score.rays << " rays at rung " << int(rung)
-                                      << "; the first " << score.first << "; " << property::rerun(seed);
-        }
-    }
+std::vector<PictureSettings> at_watertight_rungs(const CellScene& scene) {
+    std::vector<PictureSettings> variants;
+    for (const HitTest rung : leaks::watertight_rungs) variants.push_back(settings_for(scene, rung));
+    return variants;
+}
+
+void expect_no_leak(const leaks::Make& make, std::uint64_t first_seed, int surfaces, int rays) {
+    leaks::expect_no_leak(make, first_seed, surfaces, at_watertight_rungs,
+                          [=](const Closed& closed, const PictureSettings& settings, Random& random) {
+                              return leaks::shoot_at(closed, settings, rays, random);
+                          });
 }
 
 TEST(Watertight, NoRayPassesThroughABallOfFacets) { expect_no_leak(shapes::ball, 1000, 20, 1000); }
@@ -145,90 +143,43 @@ TEST(Watertight, AWallWhoseCornersMissItsPlaneByAThousandthOfACellHasNoHole) {
 /// Rays that meet the surface exactly on an edge or in a corner: two or more polygons have the point, none
 /// may miss it.
 TEST(Watertight, NoRaySlipsThroughAnEdgeOrACorner) {
-    for (const std::uint64_t seed : property::seeds(7800, 40)) {
-        Random shape(seed);
-        const Closed closed = seed % 4 == 0   ? shapes::ball(shape)
-                              : seed % 4 == 1 ? shapes::block(shape, false)
-                              : seed % 4 == 2 ? shapes::block(shape, true)
-                                              : shapes::wedge(shape);
-        for (const HitTest rung : watertight_rungs) {
-            const PictureSettings settings = settings_for(closed.scene, rung);
-            const Context context(closed.scene, settings);
-            const auto cells = load_array(closed.scene, settings, context.arithmetic);
-            Random random(seed);
-            for (int i = 0; i < 400; ++i) {
-                const auto& outline =
-                    closed.scene.polygons[std::size_t(random.whole(0, int(closed.scene.polygons.size()) - 1))]
-                        .vertices;
-                const std::size_t corner = std::size_t(random.whole(0, int(outline.size()) - 1));
-                const double share = random.chance(0.5) ? 0 : random.uniform(0, 1);
-                const dvec3 target = glm::mix(outline[corner], outline[(corner + 1) % outline.size()], share);
-                const dvec3 origin = closed.inside(random);
-                int x = 0;
-                int y = 0;
-                const Ray ray = walker::ray_at(context, origin, glm::normalize(target - origin), x, y);
-                const auto found = walker::walk(cells, context, ray, x, y);
-                ASSERT_TRUE(found && found->t < glm::length(target - origin) + 1e-5)
-                    << "rung " << int(rung) << ", target (" << target.x << ", " << target.y << ", "
-                    << target.z << "); " << property::rerun(seed);
-            }
-        }
+    const auto at_edges = [](const Closed& closed, const PictureSettings& settings, Random& random) {
+        return leaks::shoot_at_edges(closed, settings, 400, random, 1e-5);
+    };
+    const leaks::Make makes[] = {shapes::ball, [](Random& r) { return shapes::block(r, false); },
+                                 [](Random& r) { return shapes::block(r, true); }, shapes::wedge};
+    std::uint64_t first_seed = 7800;
+    for (const leaks::Make& make : makes) {
+        leaks::expect_no_leak(make, first_seed, 10, at_watertight_rungs, at_edges);
+        first_seed += 10;
     }
+}
+
+Closed large_ball(Random&) {
+    Closed closed;
+    closed.scene = shapes::empty_cube(400, 300, 1000, 1024);
+    const dvec3 centre{200.3, 150.7, 480.1};
+    hand_made::add_ball(closed.scene, 0, centre, 60, 30, [](const dvec3&) { return 140.0; });
+    closed.inside = [=](Random& r) {
+        return centre + r.uniform(0, 130) * hand_made::random_direction(r.engine());
+    };
+    return closed;
 }
 
 TEST(Watertight, NoRayPassesThroughABallInALargeArray) {
-    for (const std::uint64_t seed : property::seeds(7900, 1)) {
-        Closed closed;
-        closed.scene = shapes::empty_cube(400, 300, 1000, 1024);
-        const dvec3 centre{200.3, 150.7, 480.1};
-        hand_made::add_ball(closed.scene, 0, centre, 60, 30, [](const dvec3&) { return 140.0; });
-        closed.inside = [=](Random& r) {
-            return centre + r.uniform(0, 130) * hand_made::random_direction(r.engine());
-        };
-        for (const HitTest rung : {HitTest::plane, HitTest::mask, HitTest::edge}) {
-            Random random(seed);
-            const Score score = shoot_at(closed, rung, 5000, random);
-            EXPECT_EQ(score.leaks, 0) << "of " << score.rays << " rays at rung " << int(rung)
-                                      << "; the first " << score.first << "; " << property::rerun(seed);
-        }
-    }
+    const auto but_the_interval = [](const CellScene& scene) {
+        auto variants = at_watertight_rungs(scene);
+        variants.erase(variants.begin());
+        return variants;
+    };
+    leaks::expect_no_leak(large_ball, 7900, 1, but_the_interval,
+                          [](const Closed& closed, const PictureSettings& settings, Random& random) {
+                              return leaks::shoot_at(closed, settings, 5000, random);
+                          });
 }
 
-/// Rays that bounce inside a closed room, sent as the machine sends its reflected rays.
 TEST(Watertight, NoReflectedRayLeavesAClosedRoom) {
-    int bounces = 0;
-    for (const std::uint64_t seed : property::seeds(8000, 12)) {
-        Random shape(seed);
-        Closed closed = shapes::room(shape);
-        closed.scene.objects[0] = hand_made::mirror(1);
-        PictureSettings settings = settings_for(closed.scene, HitTest::edge);
-        settings.max_depth = 62;
-        const Context context(closed.scene, settings);
-        const auto cells = load_array(closed.scene, settings, context.arithmetic);
-        Random random(seed);
-        for (int i = 0; i < 200; ++i) {
-            int x = 0;
-            int y = 0;
-            Ray ray = walker::ray_at(context, closed.inside(random), shapes::sloped_direction(random), x, y);
-            for (int bounce = 0; bounce < 10; ++bounce) {
-                const auto found = walker::walk(cells, context, ray, x, y);
-                ASSERT_TRUE(found) << "bounce " << bounce << " of ray " << i << ": from ("
-                                   << x + ray.position.x << ", " << y + ray.position.y << ", "
-                                   << ray.position.z << ") along (" << ray.direction.x << ", "
-                                   << ray.direction.y << ", " << ray.direction.z << "); "
-                                   << property::rerun(seed);
-                x = found->x;
-                y = found->y;
-                const CellStore& store =
-                    cells[std::size_t(y) * std::size_t(closed.scene.frame.width) + std::size_t(x)];
-                const HitSetup setup = set_up_hit(context, store, found->ray, found->hit, x, y);
-                ASSERT_TRUE(setup.reflects);
-                ray = reflected_ray(context, store, found->ray, found->hit, setup, x, y);
-                ++bounces;
-            }
-        }
-    }
-    EXPECT_GT(bounces, 1900);
+    leaks::expect_no_reflected_ray_leaves_a_room(Numbers::exact);
 }
 
 TEST(Watertight, ThePapersDepthComparisonDoesLeak) {
