@@ -20,4 +20,12 @@ if(NOT RAYCELL_SANITIZE)
     add_test(NAME "sanitized: ${room}" COMMAND ${room}_tests_sanitized --gtest_brief=1)
     set_tests_properties("sanitized: ${room}" PROPERTIES TIMEOUT 900)
   endforeach()
+
+  # The reader of golden vectors: it needs SystemC's types, so its tests have an sc_main.
+  add_executable(golden_tests_sanitized tests/sc_main.cpp ${golden_tests} golden/words.cpp golden/messages.cpp
+      golden/file.cpp golden/setup.cpp)
+  target_link_libraries(golden_tests_sanitized PRIVATE raycell_sanitized PkgConfig::SYSTEMC GTest::gtest)
+  raycell_sanitized(golden_tests_sanitized)
+  add_test(NAME "sanitized: golden" COMMAND golden_tests_sanitized --gtest_brief=1)
+  set_tests_properties("sanitized: golden" PROPERTIES TIMEOUT 900)
 endif()
