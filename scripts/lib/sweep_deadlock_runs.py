@@ -1,6 +1,9 @@
 """Makes the runs of the deadlock sweep: deadlock_tb for synthetic traffic, raycell render for a scene."""
+import json
+
+import check_knots
 from sweep_deadlock_design import cost
-from sweep_runs import Cache, ReportRunner, hash_of, is_number
+from sweep_runs import Cache, Failure, ReportRunner, hash_of, is_number
 
 KEPT = ["verdict", "cycles", "pixels", "rays", "messages", "ray_store", "buffers", "storage_bits", "message_bits",
         "hash", "equals_untimed"]
@@ -34,11 +37,23 @@ class Sweep(ReportRunner):
     def brief(self, report):
         return brief(report)
 
+    def examine(self, report, folder):
+        """A deadlock is believed when a search over the dumped graph finds the same knots."""
+        if "knot" not in report["deadlock"]:
+            if report["verdict"] == "deadlock":
+                raise Failure("a deadlock without a knot")
+            return {}
+        wrong = check_knots.objection(json.loads((folder / "run.waits.json").read_text()))
+        if wrong:
+            raise Failure(f"the knot is none: {wrong}")
+        return {"knots_accepted": True}
+
     def more(self, configuration):
         return {"scene_hash": self.scene_hashes.get(configuration.load)}
 
     def is_whole(self, configuration, record):
-        return (record["scene_hash"] == self.scene_hashes.get(configuration.load)
+        return (("knot" not in record["report"]["deadlock"] or record["report"]["knots_accepted"])
+                and record["scene_hash"] == self.scene_hashes.get(configuration.load)
                 and is_number(record["report"]["cycles"]["trace"])
                 and is_number(record["report"]["storage_bits"]["ray_store"]))
 

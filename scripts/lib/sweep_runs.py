@@ -165,6 +165,10 @@ class ReportRunner(Runner):
         """Whether the record is the whole result of the run; what is missing in it may raise KeyError or TypeError."""
         raise NotImplementedError
 
+    def examine(self, _report, _folder):
+        """What else is found out about a run while its files, FOLDER/run.*, are there; goes into the brief report."""
+        return {}
+
     def more(self, _run):
         """What else belongs into the record."""
         return {}
@@ -185,7 +189,8 @@ class ReportRunner(Runner):
         folder.mkdir()
         # Codes 3 and 4 are verdicts of a run, and the report says which.
         self.execute([*self.command(run), "-o", str(folder / "run"), "--quiet", *run.options()], codes=(0, 3, 4))
-        report = self.brief(json.loads((folder / "run.json").read_text()))
+        whole = json.loads((folder / "run.json").read_text())
+        report = {**self.brief(whole), **self.examine(whole, folder)}
         shutil.rmtree(folder)
         record = {"configuration": dataclasses.asdict(run), "seconds": time.monotonic() - start, **self.more(run),
                   "report": report}

@@ -10,6 +10,7 @@
 #include "model/traffic.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/knot_report.hpp"
 #include "testbench/raycell/machine_run.hpp"
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/report_json.hpp"
@@ -35,7 +36,9 @@ struct Options {
 void add_options(OptionTable& table, Options& options) {
     PictureSettings& p = options.run.picture;
     TrafficSettings& t = options.traffic;
-    table.text("output", options.run.prefix, "PREFIX", "writes PREFIX.json and PREFIX.toml; empty: no files");
+    table.text(
+        "output", options.run.prefix, "PREFIX",
+        "writes PREFIX.json, PREFIX.toml and, of a run that stopped, PREFIX.waits.json; empty: no files");
     table.size("cells", p.width, p.height, "size of the array; each cell sends a primary ray");
     table.number("hit-probability", t.hit_probability, 0.0, 1.0,
                  "that a ray hits in a cell that it enters; never in the one that it starts from");
@@ -124,6 +127,8 @@ int run(Options& options, const OptionTable& table) {
     if (!o.prefix.empty()) {
         OutputSet outputs(o.prefix);
         outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(json["config"])); });
+        outputs.write_if(!result.waits.nodes().empty(), ".waits.json",
+                         [&] { return to_text(waits_json(result)); });
         outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
         outputs.keep();
     }

@@ -53,6 +53,20 @@ void OutputSet::write(const std::string& suffix, const std::function<void(const 
     paths_.push_back(prefix_ + suffix);
 }
 
+void OutputSet::write_if(bool there, const std::string& suffix, const std::function<std::string()>& text) {
+    if (there) {
+        write(suffix, [&](const std::string& path) { write_text(path, text()); });
+    } else {
+        outdated_.push_back(prefix_ + suffix);
+    }
+}
+
+void OutputSet::keep() {
+    paths_.clear();
+    for (const std::string& path : outdated_) std::remove(path.c_str());
+    outdated_.clear();
+}
+
 OutputSet::~OutputSet() {
     for (const std::string& path : paths_) std::remove(path.c_str());
 }

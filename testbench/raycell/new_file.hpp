@@ -48,11 +48,15 @@ class OutputSet {
 
     /// Has PREFIX + suffix written, and remembers it once it is there.
     void write(const std::string& suffix, const std::function<void(const std::string& path)>& writer);
-    void keep() { paths_.clear(); }
+    /// The same for a text that there may be or not: without it, a file that an earlier run left under this
+    /// name is removed by keep(), so that it is not taken for this run's.
+    void write_if(bool there, const std::string& suffix, const std::function<std::string()>& text);
+    void keep();
 
   private:
     std::string prefix_;
     std::vector<std::string> paths_;
+    std::vector<std::string> outdated_;
 };
 
 }  // namespace raycell

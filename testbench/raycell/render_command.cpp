@@ -199,18 +199,11 @@ int run(const RenderOptions& options, const OptionTable& table) {
     outputs.write(".exr", [&](const std::string& path) { write_exr(result.picture, path); });
     outputs.write(".png", [&](const std::string& path) { write_png(result.picture, path); });
     outputs.write(".cells.csv", [&](const std::string& path) { write_text(path, done.cells_csv); });
-    if (result.ledger.destroyed() > 0) {
-        outputs.write(".ledger.csv",
-                      [&](const std::string& path) { write_text(path, ledger_csv(result.ledger)); });
-    }
-    if (!result.waits.nodes().empty()) {
-        outputs.write(".waits.json",
-                      [&](const std::string& path) { write_text(path, to_text(waits_json(result))); });
-    }
-    if (result.waits.deadlocked()) {
-        const std::string svg = knot_svg(result, options.picture.width, options.picture.height);
-        outputs.write(".knot.svg", [&](const std::string& path) { write_text(path, svg); });
-    }
+    outputs.write_if(result.ledger.destroyed() > 0, ".ledger.csv", [&] { return ledger_csv(result.ledger); });
+    outputs.write_if(!result.waits.nodes().empty(), ".waits.json",
+                     [&] { return to_text(waits_json(result)); });
+    outputs.write_if(result.waits.deadlocked(), ".knot.svg",
+                     [&] { return knot_svg(result, options.picture.width, options.picture.height); });
     outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(config)); });
     outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
     if (done.probes) done.probes->write(outputs);

@@ -28,7 +28,9 @@ Json report(const Workshop& workshop, const std::string& arguments, int exit_cod
     const Finished finished = run_deadlock_tb(workshop, arguments + " --quiet -o results/a");
     EXPECT_EQ(finished.exit_code, exit_code) << finished.err.substr(0, 2000);
     EXPECT_EQ(finished.out, "") << "--quiet";
-    EXPECT_EQ(workshop.results(), (std::vector<std::string>{"a.json", "a.toml"}));
+    std::vector<std::string> files{"a.json", "a.toml"};
+    if (exit_code == 3 || exit_code == 4) files.push_back("a.waits.json");
+    EXPECT_EQ(workshop.results(), files);
     if (!fs::exists(workshop.result("a.json"))) return {};
     Json json = Json::parse(read_text(workshop.result("a.json")));
     EXPECT_TRUE(json.at("equals_untimed").get<bool>());
@@ -57,6 +59,38 @@ TEST(DeadlockTb, LocksOverOneNetworkAtAnyRayStore) {
         EXPECT_FALSE(json.at("deadlock").at("report").empty());
         EXPECT_LT(json.at("pixels").at("completed").get<int>(), json.at("pixels").at("all").get<int>());
     }
+}
+
+TEST(DeadlockTb, LeavesNoGraphOfAnEarlierRunBesideAResultWithoutOne) {
+    const Workshop workshop;
+    report(workshop, "--networks shared --recovery none", 3);
+    report(workshop, "");  // expects a.json and a.toml alone
+}
+
+/// The search that the sweep trusts.
+Finished check_knots(const Workshop& workshop, const fs::path& graph) {
+    return workshop.run_program("/usr/bin/python3",
+                                {fs::path(RAYCELL_SOURCE_DIR) / "scripts/lib/check_knots.py", graph});
+}
+
+TEST(DeadlockTb, ItsKnotsAreAcceptedByASearchOfTheSweepsOwn) {
+    const Workshop workshop;
+    report(workshop, "--networks split --recovery none --cells 24x24 --seed 3", 3);
+    const fs::path graph = workshop.result("a.waits.json");
+    const Finished accepted = check_knots(workshop, graph);
+    EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
+    EXPECT_TRUE(contains(accepted.out, "knots, accepted")) << accepted.out;
+
+    // A node of a knot that could move, a knot without one of its nodes, and no knot at all.
+    const Json json = Json::parse(read_text(graph));
+    ASSERT_FALSE(json.at("knots").empty());
+    Json moves = json, smaller = json, none = json;
+    moves["nodes"][json["knots"][0][0].get<std::size_t>()]["moves"] = true;
+    smaller["knots"][0].erase(0);
+    none["knots"] = Json::array();
+    for (const Json& altered : {moves, smaller, none})
+        EXPECT_EQ(check_knots(workshop, workshop.write("altered.json", altered.dump())).exit_code, 2);
+    EXPECT_EQ(check_knots(workshop, workshop.write("other.json", "{}")).exit_code, 1);
 }
 
 TEST(DeadlockTb, LocksInHalvesBelowASmallStoreWithoutRecoveryAndEndsWithIt) {
