@@ -7,12 +7,12 @@ void RowDistributor::take(LoadItem& item, Cycle now) {
     item_ = &item;
     passed_on_ = false;
     const bool last_row = row_ + 1 == env.height();
-    std::uint64_t work = env.costs().distribution_pass;
+    Cycle cycles = env.costs().distribution_pass;
     if (item.kind == LoadItem::Kind::trapeze) {
         goes_down_ = !last_row && item.trapeze.reaches_below(row_);
         const bool gouraud = env.context.settings.display == Display::gouraud;
         if (row_ >= item.trapeze.first_row(env.height())) {
-            work = env.costs().distribution_span;
+            cycles = env.costs().distribution_span;
             auto span = cut_span(item.trapeze, row_, env.width(), env.context.arithmetic,
                                  gouraud ? &item.intensities : nullptr);
             if (span) {
@@ -22,15 +22,14 @@ void RowDistributor::take(LoadItem& item, Cycle now) {
                 ++statistics_.items;
             }
         }
-        statistics_.busy_cycles += work;
     } else {
         goes_down_ = !last_row;
         to_row_ = env.pools.loads.take();
         to_row_->kind = item.kind;
         to_row_->object = item.object;
-        statistics_.busy_cycles += work;
     }
-    ready_ = now + work;
+    work(now, cycles);
+    ready_ = now + cycles;
 }
 
 Cycle RowDistributor::step(Cycle now) {

@@ -70,6 +70,15 @@ void Exterior::begin(Processor& processor, std::uint32_t port, int index, Cycle 
     ++working_;
 }
 
+StageStatistics Exterior::statistics() const {
+    StageStatistics so_far = statistics_;
+    const Cycle now = environment().scheduler.now();
+    for (const Processor& processor : processors_) {
+        if (processor.busy && processor.done > now) so_far.busy_cycles -= processor.done - now;
+    }
+    return so_far;
+}
+
 Cycle Exterior::step(Cycle now) {
     Environment& env = environment();
     Cycle next = never;

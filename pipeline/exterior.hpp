@@ -27,6 +27,8 @@ class Exterior : public Stage, public Link::Arrivals {
     void add_places(WaitMap& map) const;
     void add_waits(WaitMap& map) const;
     bool busy() const { return !waiting_.empty() || working_ > 0; }
+    /// Of all processors, up to now.
+    StageStatistics statistics() const;
     /// Rays that its processors have taken and not yet answered.
     int working() const { return working_; }
 

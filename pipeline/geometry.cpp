@@ -49,7 +49,7 @@ Cycle Geometry::step(Cycle now) {
         item_ = next_item();
         if (!item_) return never;
         ready_ = now + work_;
-        statistics_.busy_cycles += work_;
+        work(now, work_);
     }
     if (now < ready_) return ready_;
     Cycle retry = never;

@@ -29,6 +29,8 @@ const char* name_of(Verdict verdict) {
             return "cycle_limit";
         case Verdict::capacity:
             return "capacity";
+        case Verdict::interrupted:
+            return "interrupted";
     }
     return "";
 }
@@ -102,6 +104,10 @@ Cycle Machine::livelock_window() const {
 bool Machine::watch(void* self, Cycle now) {
     auto& machine = *static_cast<Machine*>(self);
     Environment& env = machine.environment_;
+    if (machine.interrupt_ && *machine.interrupt_) {
+        machine.interrupted_ = true;
+        return false;
+    }
     machine.activity_.observe(now, env.counters);
     if (env.phase == Phase::trace && env.counters.rays_destroyed > 0 &&
         now - std::max(env.counters.last_progress, env.phase_start) > machine.livelock_window()) {

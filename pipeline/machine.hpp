@@ -1,6 +1,7 @@
 // The whole machine: binds the stages, the array and the exterior, and runs the phases.
 #pragma once
 
+#include <csignal>
 #include <functional>
 #include <memory>
 #include <string>
@@ -16,7 +17,7 @@
 
 namespace raycell {
 
-enum class Verdict { completed, deadlock, livelock, cycle_limit, capacity };
+enum class Verdict { completed, deadlock, livelock, cycle_limit, capacity, interrupted };
 const char* name_of(Verdict verdict);
 
 /// What a time-out of `cycles` in every cell would have told (cells/time_out.hpp), beside the proof.
@@ -98,6 +99,10 @@ class Machine : public sc_core::sc_module {
     /// Runs load, precast and trace to a verdict. Call once.
     RunResult run(std::function<void(const RunProgress&)> progress = {});
 
+    /// While `flag` is not 0 the run ends before its next cycle, with the verdict `interrupted` and what
+    /// there is so far; for signal handlers. Null: nothing interrupts.
+    void interrupt_by(const volatile std::sig_atomic_t* flag) { interrupt_ = flag; }
+
     Array& array() { return array_; }
     Environment& environment() { return environment_; }
 
@@ -152,6 +157,8 @@ class Machine : public sc_core::sc_module {
     std::uint64_t watch_calls_ = 0;
     ActivityRecorder activity_;
     Cycle drain_start_ = never;
+    const volatile std::sig_atomic_t* interrupt_ = nullptr;
+    bool interrupted_ = false;
 };
 
 }  // namespace raycell

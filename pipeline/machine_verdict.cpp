@@ -25,6 +25,10 @@ bool Machine::phase_complete() const {
 }
 
 void Machine::judge(RunResult& result) {
+    if (interrupted_) {  // whoever interrupts does not want to wait for a proof
+        result.verdict = Verdict::interrupted;
+        return;
+    }
     if (environment_.phase != Phase::load) result.waits = wait_graph();
     const bool locked = result.waits.deadlocked();
     if (scheduler_.limit_reached()) {

@@ -30,7 +30,7 @@ Cycle Precomputation::step(Cycle now) {
             item_->intensities = shade_corners(item_->trapeze, env.context.scene);
         }
         ready_ = now + env.costs().precomputation_trapeze;
-        statistics_.busy_cycles += env.costs().precomputation_trapeze;
+        work(now, env.costs().precomputation_trapeze);
         ++statistics_.items;
     }
     if (!item_) return now + 1;

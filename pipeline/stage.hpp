@@ -24,13 +24,24 @@ class Stage : public sc_core::sc_module, public Client {
         dont_initialize();
     }
     void activate() override { wake_.notify(); }
-    const StageStatistics& statistics() const { return statistics_; }
+    /// Up to now: of an operation that is still going on, the cycles that are over.
+    StageStatistics statistics() const {
+        StageStatistics so_far = statistics_;
+        const Cycle now = environment_.scheduler.now();
+        if (busy_until_ > now) so_far.busy_cycles -= busy_until_ - now;
+        return so_far;
+    }
 
   protected:
     /// One cycle; returns the next one in which the stage wants to run of itself.
     virtual Cycle step(Cycle now) = 0;
     Environment& environment() { return environment_; }
     const Environment& environment() const { return environment_; }
+    /// An operation begins.
+    void work(Cycle now, Cycle cycles) {
+        statistics_.busy_cycles += cycles;
+        busy_until_ = now + cycles;
+    }
     StageStatistics statistics_;
 
   private:
@@ -39,6 +50,7 @@ class Stage : public sc_core::sc_module, public Client {
         if (next != never) environment_.scheduler.wake(*this, next);
     }
     Environment& environment_;
+    Cycle busy_until_ = 0;
     sc_core::sc_event wake_;
 };
 

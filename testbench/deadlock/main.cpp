@@ -10,6 +10,7 @@
 #include "model/traffic.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/interruptible.hpp"
 #include "testbench/raycell/knot_report.hpp"
 #include "testbench/raycell/machine_run.hpp"
 #include "testbench/raycell/new_file.hpp"
@@ -112,6 +113,7 @@ int run(Options& options, const OptionTable& table) {
     static Machine* const machine = new Machine("machine", scene, picture, o.machine, nullptr, &traffic);
     const double wall_build = seconds_since(built);
     const bool progress = shows_progress(o);
+    const Interruptible interruptible(*machine);
     const RunResult result =
         machine->run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();

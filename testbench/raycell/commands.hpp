@@ -8,8 +8,14 @@
 
 namespace raycell {
 
-/// Exit codes (design, section 10).
-enum ExitCode { exit_done = 0, exit_usage = 1, exit_comparison = 2, exit_stuck = 3, exit_limit = 4 };
+enum ExitCode {
+    exit_done = 0,
+    exit_usage = 1,
+    exit_comparison = 2,
+    exit_stuck = 3,
+    exit_limit = 4,
+    exit_interrupted = 5  ///< by SIGINT or SIGTERM, results so far written
+};
 
 struct Command {
     CLI::App* app;

@@ -55,6 +55,8 @@ int exit_code(Verdict verdict) {
         case Verdict::cycle_limit:
         case Verdict::capacity:
             return exit_limit;
+        case Verdict::interrupted:
+            return exit_interrupted;
     }
     return exit_usage;
 }

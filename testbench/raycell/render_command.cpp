@@ -16,6 +16,7 @@
 #include "testbench/raycell/configuration.hpp"
 #include "testbench/raycell/deadlock_dump.hpp"
 #include "testbench/raycell/golden_run.hpp"
+#include "testbench/raycell/interruptible.hpp"
 #include "testbench/raycell/knot_report.hpp"
 #include "testbench/raycell/machine_run.hpp"
 #include "testbench/raycell/new_file.hpp"
@@ -81,6 +82,7 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     if (!observers.empty()) machine.environment().observer = &observers;
     if (!options.probes.cells.empty()) run.probes = std::make_unique<ProbeRun>(options, machine);
     const bool progress = shows_progress(options) && !watch;
+    const Interruptible interruptible(machine);
     run.result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
     if (watch) watch->finish(machine.environment().scheduler.now());

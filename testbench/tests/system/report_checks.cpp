@@ -151,7 +151,7 @@ void expect_sound(const Json& report) {
     if (!has_every_key(report)) return;
     const std::string verdict = report.at("verdict");
     EXPECT_TRUE(verdict == "completed" || verdict == "deadlock" || verdict == "livelock" ||
-                verdict == "cycle_limit" || verdict == "capacity")
+                verdict == "cycle_limit" || verdict == "capacity" || verdict == "interrupted")
         << verdict;
     const bool ended = verdict == "completed" || verdict == "capacity";
     const bool timed = report.at("config").at("engine") == "timed";
