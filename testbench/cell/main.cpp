@@ -1,9 +1,7 @@
 // cell_tb: one cell with drivers on its sides. Runs scripted scenarios, or golden vectors of a real run.
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <systemc>
 
 #include "cells/probe.hpp"
@@ -11,18 +9,13 @@
 #include "testbench/golden/cell_bench.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/entry.hpp"
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/options.hpp"
 
 namespace {
 
 using namespace raycell;
-
-/// SystemC prints its banner before sc_main(); standard error belongs to the run's own messages.
-const bool banner_off = [] {
-    setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
-    return true;
-}();
 
 constexpr int exit_differs = 2;
 constexpr const char* vcd_suffix = ".vcd";
@@ -174,6 +167,21 @@ int run_all(const Options& options, const std::vector<Scenario>& scenarios) {
     return failed ? exit_differs : exit_done;
 }
 
+int run(const Options& options) {
+    const std::vector<Scenario> scenarios = chosen_scenarios(options);
+    check(options, scenarios.size());
+    if (options.list) {
+        for (const Scenario& scenario : scenarios)
+            std::cout << scenario.name << ": " << scenario.says << '\n';
+        return exit_done;
+    }
+    if (!options.write.empty()) {
+        write_scenario(scenarios.front(), options.write);
+        return exit_done;
+    }
+    return run_all(options, scenarios);
+}
+
 int run(int argc, char** argv) {
     CLI::App app{
         "One cell with drivers on its four sides: scripted scenarios, and golden vectors of real runs"};
@@ -190,35 +198,11 @@ int run(int argc, char** argv) {
     app.add_option("--write", options.write, "write one scenario as golden vectors instead of running it")
         ->type_name("FILE");
     app.add_flag("--quiet", options.quiet, "print nothing but failures");
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? exit_done : exit_usage;
-    }
-    const std::vector<Scenario> scenarios = chosen_scenarios(options);
-    check(options, scenarios.size());
-    if (options.list) {
-        for (const Scenario& scenario : scenarios)
-            std::cout << scenario.name << ": " << scenario.says << '\n';
-        return exit_done;
-    }
-    if (!options.write.empty()) {
-        write_scenario(scenarios.front(), options.write);
-        return exit_done;
-    }
-    return run_all(options, scenarios);
+    return parse_and_run(app, {argv + 1, argv + argc}, [&] { return run(options); });
 }
 
 }  // namespace
 
 int sc_main(int argc, char** argv) {
-    (void)banner_off;
-    try {
-        return run(argc, argv);
-    } catch (const raycell::GoldenError& error) {
-        std::cerr << error.what() << '\n';
-    } catch (const std::exception& error) {
-        std::cerr << "cell_tb: " << error.what() << '\n';
-    }
-    return raycell::exit_usage;
+    return raycell::run_guarded("cell_tb", "fewer files at once", [&] { return run(argc, argv); });
 }

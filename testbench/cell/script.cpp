@@ -7,17 +7,6 @@
 #include "model/trapeze.hpp"
 
 namespace raycell {
-namespace {
-
-std::vector<std::string> split(const std::string& text) {
-    std::istringstream words(text);
-    std::vector<std::string> tokens;
-    for (std::string word; words >> word;) tokens.push_back(word);
-    return tokens;
-}
-
-}  // namespace
-
 Script::Script(std::string name, std::string says) {
     scenario_.name = std::move(name);
     scenario_.says = std::move(says);
@@ -40,7 +29,7 @@ std::string Script::text(Message message) const { return text_of(Words(arithmeti
 
 Script& Script::add(GoldenEvent::What what, Cycle cycle, Side side, int index, int cycles,
                     const std::string& text) {
-    GoldenEvent event{what, cycle, int(side), index, cycles, split(text), 0};
+    GoldenEvent event{what, cycle, int(side), index, cycles, tokens_of(text), 0};
     if (what == GoldenEvent::What::out && (event.tokens[0] == "ray" || event.tokens[0] == "answer"))
         event.tokens[2] = "*";
     scenario_.events.push_back(std::move(event));

@@ -1,15 +1,14 @@
 // deadlock_tb: synthetic ray traffic through the simulated machine, without a scene: does it lock, and where?
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <iomanip>
 #include <iostream>
-#include <new>
 #include <systemc>
 
 #include "model/traffic.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/entry.hpp"
 #include "testbench/raycell/interruptible.hpp"
 #include "testbench/raycell/knot_report.hpp"
 #include "testbench/raycell/machine_run.hpp"
@@ -22,12 +21,6 @@ namespace {
 using namespace raycell;
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
-
-/// SystemC prints its banner before sc_main(); standard error belongs to the run's own messages.
-const bool banner_off = [] {
-    setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
-    return true;
-}();
 
 struct Options {
     RenderOptions run;  ///< array, machine, --output, --quiet
@@ -161,28 +154,11 @@ int run(int argc, char** argv) {
         ->type_name("FILE");
     add_options(table, options);
     std::vector<std::string> words = with_configuration({argv, argv + argc}, app);
-    std::reverse(words.begin(), words.end());  // CLI11 takes a vector from its end
-    try {
-        app.parse(words);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? exit_done : exit_usage;
-    }
-    const int code = run(options, table);
-    std::cout.flush();
-    if (!std::cout) throw std::runtime_error("standard output can't be written");
-    return code;
+    return parse_and_run(app, std::move(words), [&] { return run(options, table); });
 }
 
 }  // namespace
 
 int sc_main(int argc, char** argv) {
-    (void)banner_off;
-    try {
-        return run(argc, argv);
-    } catch (const std::bad_alloc&) {
-        std::cerr << "deadlock_tb: out of memory; expected a smaller array\n";
-    } catch (const std::exception& error) {
-        std::cerr << "deadlock_tb: " << error.what() << '\n';
-    }
-    return raycell::exit_usage;
+    return raycell::run_guarded("deadlock_tb", "a smaller array", [&] { return run(argc, argv); });
 }

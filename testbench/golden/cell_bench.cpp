@@ -9,13 +9,6 @@
 namespace raycell {
 namespace {
 
-std::vector<std::string> split(const std::string& text) {
-    std::istringstream words(text);
-    std::vector<std::string> tokens;
-    for (std::string word; words >> word;) tokens.push_back(word);
-    return tokens;
-}
-
 std::string line_of(const GoldenEvent& event) {
     return event.line > 0 ? " (line " + std::to_string(event.line) + ")" : "";
 }
@@ -249,7 +242,7 @@ void CellBench::report(const GoldenEvent& event, const std::string& what) {
 void CellBench::sent(const Link& link, int index, const Message& message, int cycles, Cycle now) {
     for (int side = 0; side < side_count; ++side) {
         if (out_[std::size_t(side)].get() != &link) continue;
-        compare({GoldenEvent::What::out, now, side, index, cycles, split(text_of(words_, message)), 0});
+        compare({GoldenEvent::What::out, now, side, index, cycles, tokens_of(text_of(words_, message)), 0});
     }
 }
 

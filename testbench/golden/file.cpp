@@ -17,13 +17,6 @@ constexpr Cycle most_cycles = Cycle(1) << 48;
     throw GoldenError(name + ":" + std::to_string(line) + ": " + what);
 }
 
-std::vector<std::string> split(const std::string& line) {
-    std::istringstream words(line);
-    std::vector<std::string> tokens;
-    for (std::string word; words >> word;) tokens.push_back(word);
-    return tokens;
-}
-
 class EventReader {
   public:
     EventReader(const std::string& name, int line, const std::vector<std::string>& tokens)
@@ -138,7 +131,7 @@ GoldenFile read_golden(std::istream& in, const std::string& name) {
             file.configuration += line.substr(7) + "\n";
             continue;
         }
-        const std::vector<std::string> tokens = split(line);
+        const std::vector<std::string> tokens = tokens_of(line);
         if (tokens.empty() || tokens[0][0] == '#') continue;
         if (ended) fail(name, number, "expected nothing behind 'end'");
         if (!begun) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <sstream>
 
 namespace raycell {
 namespace {
@@ -30,6 +31,13 @@ bool is_hexadecimal(const std::string& text) {
 bool is_integer(double x) { return std::abs(x) <= most_integer && std::nearbyint(x) == x; }
 
 }  // namespace
+
+std::vector<std::string> tokens_of(const std::string& line) {
+    std::istringstream words(line);
+    std::vector<std::string> tokens;
+    for (std::string word; words >> word;) tokens.push_back(word);
+    return tokens;
+}
 
 std::string Words::hexadecimal(double value) {
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "model/arithmetic.hpp"
 
@@ -12,6 +13,9 @@ namespace raycell {
 struct GoldenError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// The words of a line, which blanks separate.
+std::vector<std::string> tokens_of(const std::string& line);
 
 /// Text of numbers and back, nothing lost. A word is its integer, in units of its format's last bit; a
 /// floating number is mantissa:exponent, the value mantissa · 2^(exponent - bits + 1), its mantissa of `bits`

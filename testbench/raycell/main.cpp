@@ -1,24 +1,17 @@
 // raycell: renders with the simulated machine, renders the truth, compares pictures, sizes the machine.
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
-#include <new>
 #include <systemc>
 
 #include "scenes/diagnostics.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/entry.hpp"
 #include "testbench/raycell/options.hpp"
 
 namespace {
 
 using namespace raycell;
-
-/// SystemC prints its banner before sc_main(); standard error belongs to the run's own messages.
-const bool banner_off = [] {
-    setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
-    return true;
-}();
 
 /// CLI11 takes a vector of arguments from its end.
 void parse(CLI::App& program, std::vector<std::string> words) {
@@ -78,15 +71,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int sc_main(int argc, char** argv) {
-    (void)banner_off;
-    try {
-        return run(argc, argv);
-    } catch (const raycell::InputError& error) {
-        std::cerr << error.what() << '\n';
-    } catch (const std::bad_alloc&) {
-        std::cerr << "raycell: out of memory; expected a smaller array or scene\n";
-    } catch (const std::exception& error) {
-        std::cerr << "raycell: " << error.what() << '\n';
-    }
-    return raycell::exit_usage;
+    return raycell::run_guarded("raycell", "a smaller array or scene", [&] { return run(argc, argv); });
 }

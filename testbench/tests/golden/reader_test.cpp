@@ -11,13 +11,6 @@
 namespace raycell {
 namespace {
 
-std::vector<std::string> split(const std::string& text) {
-    std::istringstream words(text);
-    std::vector<std::string> tokens;
-    for (std::string word; words >> word;) tokens.push_back(word);
-    return tokens;
-}
-
 NumberSettings words_of(int bits) {
     NumberSettings settings;
     settings.word_bits = bits;
@@ -86,7 +79,7 @@ Arithmetic drawn_arithmetic(property::Random& random) {
 void expect_round_trip(const Words& words, const Message& message) {
     MessagePools pools;
     const std::string text = text_of(words, message);
-    EXPECT_EQ(text_of(words, read_message(words, split(text), pools)), text);
+    EXPECT_EQ(text_of(words, read_message(words, tokens_of(text), pools)), text);
 }
 
 TEST(GoldenText, WordsOfEveryFormatComeBackBitForBit) {
@@ -145,7 +138,7 @@ TEST(GoldenText, EveryFieldOfAMessageHasAName) {
     Answer answer;
     LoadItem item;
     for (const Message& message : {Message(&packet), Message(&answer), Message(&item)}) {
-        const auto tokens = split(text_of(words, message));
+        const auto tokens = tokens_of(text_of(words, message));
         EXPECT_EQ(field_names(tokens[0]).size(), tokens.size() - 1) << tokens[0];
     }
 }
@@ -154,7 +147,7 @@ TEST(GoldenText, AWrongFieldIsNamed) {
     const Arithmetic arithmetic;
     const Words words(arithmetic);
     RayPacket packet;
-    const auto tokens = split(text_of(words, Message(&packet)));
+    const auto tokens = tokens_of(text_of(words, Message(&packet)));
     const auto names = field_names("ray");
     MessagePools pools;
     for (std::size_t i = 1; i < tokens.size(); ++i) {
