@@ -1,0 +1,31 @@
+// Loaded arrays as files: loading a large scene takes longer than tracing it, and is the same every time.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "model/placement.hpp"
+#include "model/voxel.hpp"
+
+namespace raycell {
+
+struct LoadedArray {
+    std::uint64_t key = 0;              ///< of what loading depends on: loading_key()
+    std::vector<CellStore> cells;       ///< row-major
+    std::vector<std::uint64_t> counts;  ///< what else the machine wants to know again, in its own order
+};
+
+/// A hash of everything that the voxels of an array and the cycles of its loading depend on: the placed scene
+/// and the settings that are not of tracing alone.
+std::uint64_t loading_key(const CellScene& scene, const PictureSettings& picture,
+                          const MachineSettings& machine);
+
+/// Writes the array, its bytes least significant first, a checksum at the end. Errors of the stream are the
+/// caller's to look for.
+void write_array(std::FILE* file, const LoadedArray& array);
+
+/// Throws std::runtime_error "NAME: what" for what is no such file, is damaged or cut off.
+LoadedArray read_array(std::FILE* file, const std::string& name);
+
+}  // namespace raycell
