@@ -1,65 +1,167 @@
 #include "cells/array.hpp"
 
-namespace raycell {
+#include <algorithm>
 
-Array::Array(sc_core::sc_module_name name, Environment& environment)
+namespace raycell {
+namespace {
+
+/// Classes that a link over this side carries.
+std::uint32_t used_classes(const BufferClasses& classes, Side side) {
+    const bool horizontal = side == Side::east || side == Side::west;
+    std::uint32_t used = 0;
+    for (int index = 0; index < classes.count; ++index) {
+        if (classes.used(index, horizontal, side)) used |= 1U << index;
+    }
+    return used;
+}
+
+}  // namespace
+
+bool Granularity::is_module(int x, int y) const {
+    return every_cell || std::any_of(detail.begin(), detail.end(),
+                                     [&](const CellRange& range) { return range.contains(x, y); });
+}
+
+std::size_t Granularity::modules(int width, int height) const {
+    if (every_cell) return std::size_t(width) * std::size_t(height);
+    if (detail.empty()) return 0;
+    std::size_t sum = 0;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) sum += is_module(x, y);
+    }
+    return sum;
+}
+
+Array::Array(sc_core::sc_module_name name, Environment& environment, const Granularity& granularity)
     : sc_module(name), environment_(environment) {
     const int width = environment.width();
     const int height = environment.height();
     cells_.reserve(std::size_t(width) * std::size_t(height));
     for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const std::string cell_name = "cell_" + std::to_string(x) + "_" + std::to_string(y);
-            cells_.push_back(std::make_unique<CellModule>(cell_name.c_str(), environment, x, y));
-        }
+        for (int x = 0; x < width; ++x) cells_.emplace_back(environment, x, y);
     }
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            for (const Side side : {Side::east, Side::south, Side::west, Side::north}) {
-                const int to_x = x + step_x(side);
-                const int to_y = y + step_y(side);
-                if (to_x < 0 || to_x >= width || to_y < 0 || to_y >= height) continue;
-                CellModule& source = cell(x, y);
-                CellModule& sink = cell(to_x, to_y);
-                Link& link = make_link(source, sink, side);
-                sinks_.push_back(index(to_x, to_y));
-                sides_.push_back(side);
-                source.out[std::size_t(side)].bind(link);
-                sink.in[std::size_t(opposite(side))].bind(link);
-            }
+    make_hosts(granularity);
+    make_links();
+}
+
+void Array::make_hosts(const Granularity& granularity) {
+    const auto name_at = [](const char* what, int x, int y) {
+        return what + ("_" + std::to_string(x)) + "_" + std::to_string(y);
+    };
+    const int tile_side = granularity.tile_side;
+    const int columns = (environment_.width() + tile_side - 1) / tile_side;
+    const int rows = (environment_.height() + tile_side - 1) / tile_side;
+    for (int i = 0; !granularity.every_cell && i < columns * rows; ++i) {
+        tiles_.push_back(
+            std::make_unique<CellTile>(name_at("tile", i % columns, i / columns).c_str(), environment_));
+    }
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        Cell& cell = cells_[i];
+        if (granularity.is_module(cell.x(), cell.y())) {
+            modules_[i] =
+                std::make_unique<CellModule>(name_at("cell", cell.x(), cell.y()).c_str(), environment_, cell);
+        } else {
+            cell.set_host(*tiles_[std::size_t(cell.y() / tile_side * columns + cell.x() / tile_side)]);
         }
     }
 }
 
-Link& Array::make_link(CellModule& source, CellModule& sink, Side side) {
-    constexpr const char* names[] = {"east", "south", "west", "north"};
-    links_.push_back(std::make_unique<Link>(environment_.scheduler, environment_.classes.count,
-                                            environment_.machine.buffer_depth));
-    Link& link = *links_.back();
-    link.set_name(std::string(source.basename()) + "." + names[int(side)]);
-    environment_.stall(link);
-    link.connect_source(source);
-    link.connect_sink(sink);
-    return link;
+void Array::make_links() {
+    ways_.reserve(cells_.size() * side_count);
+    for (int y = 0; y < environment_.height(); ++y) {
+        for (int x = 0; x < environment_.width(); ++x) {
+            for (int side = 0; side < side_count; ++side) make_link(x, y, Side(side));
+        }
+    }
 }
 
-void Array::join_border(int x, int y, Side side, LinkIn* from_outside, LinkOut* to_outside) {
-    if (from_outside) cell(x, y).in[std::size_t(side)].bind(*from_outside);
-    if (to_outside) cell(x, y).out[std::size_t(side)].bind(*to_outside);
+void Array::make_link(int x, int y, Side side) {
+    const int to_x = x + step_x(side);
+    const int to_y = y + step_y(side);
+    if (to_x < 0 || to_x >= environment_.width() || to_y < 0 || to_y >= environment_.height()) return;
+    Link& link =
+        links_.emplace_back(environment_.scheduler, environment_.classes.count,
+                            environment_.machine.buffer_depth, used_classes(environment_.classes, side));
+    ways_.push_back(std::uint32_t(index(x, y)) * side_count + std::uint32_t(side));
+    if (environment_.machine.stall > 0) {
+        environment_.stall(link, "cell_" + std::to_string(x) + "_" + std::to_string(y) + "." + name_of(side));
+    }
+    link.connect_source(cell(x, y));
+    link.connect_sink(cell(to_x, to_y));
+    bind_out(x, y, side, link);
+    bind_in(to_x, to_y, opposite(side), link);
+}
+
+CellModule* Array::module(int x, int y) {
+    if (modules_.empty()) return nullptr;
+    const auto found = modules_.find(index(x, y));
+    return found == modules_.end() ? nullptr : found->second.get();
+}
+
+void Array::bind_in(int x, int y, Side side, Link& link) {
+    if (CellModule* host = module(x, y)) {
+        host->in[std::size_t(side)].bind(link);
+    } else {
+        cell(x, y).connect_in(side, link);
+    }
+}
+
+void Array::bind_out(int x, int y, Side side, Link& link) {
+    if (CellModule* host = module(x, y)) {
+        host->out[std::size_t(side)].bind(link);
+    } else {
+        cell(x, y).connect_out(side, link);
+    }
+}
+
+std::size_t Array::sink_of(std::size_t link) const {
+    const Cell& source = cells_[ways_[link] / side_count];
+    return index(source.x() + step_x(side_of(link)), source.y() + step_y(side_of(link)));
+}
+
+void Array::join_border(int x, int y, Side side, Link& from_outside, Link& to_outside) {
+    bind_in(x, y, side, from_outside);
+    bind_out(x, y, side, to_outside);
+}
+
+void Array::join_row(int y, Link& load) {
+    load.connect_sink(cell(0, y));
+    if (CellModule* host = module(0, y)) {
+        host->load_in.bind(load);
+    } else {
+        cell(0, y).connect_load(load);
+    }
+}
+
+/// A module's ports know their links only when elaboration ends, so it sees to its cell itself.
+void Array::end_of_elaboration() {
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        if (modules_.count(i) == 0) cells_[i].elaborate();
+    }
 }
 
 void Array::begin_phase() {
     const Cycle next = environment_.scheduler.now() + 1;
-    for (const auto& cell : cells_) {
-        cell->cell().begin_phase();
-        environment_.scheduler.wake(*cell, next);
+    for (Cell& cell : cells_) {
+        cell.begin_phase();
+        environment_.scheduler.wake(cell, next);
     }
 }
 
 std::uint64_t Array::schedule_hash() const {
     std::uint64_t hash = 0xcbf29ce484222325ULL;
-    for (const auto& cell : cells_) hash = (hash ^ cell->cell().schedule_hash()) * 0x100000001b3ULL;
+    for (const Cell& cell : cells_) hash = (hash ^ cell.schedule_hash()) * 0x100000001b3ULL;
     return hash;
+}
+
+double Array::bytes(const Granularity& granularity, int width, int height, const BufferClasses& classes) {
+    // Links over the border, which a tile's array may not have, are counted.
+    double each = sizeof(Cell);
+    for (int side = 0; side < side_count; ++side) {
+        each += Link::bytes(used_classes(classes, Side(side))) + sizeof(std::uint32_t);
+    }
+    constexpr double module = 10e3;  // measured: ports, process and event of SystemC's
+    return each * width * height + module * double(granularity.modules(width, height));
 }
 
 }  // namespace raycell

@@ -1,29 +1,53 @@
 // RC, the cell array: W x H cells, 4-connected (paper, section 2.4).
 #pragma once
 
+#include <deque>
+#include <map>
 #include <memory>
 #include <systemc>
 #include <vector>
 
 #include "cells/cell_module.hpp"
+#include "cells/cell_tile.hpp"
 
 namespace raycell {
 
+/// Who runs the cells: these are modules of their own, all others are in tiles. Nothing that a run tells
+/// depends on it.
+struct Granularity {
+    bool every_cell = false;
+    std::vector<CellRange> detail;
+    int tile_side = 64;  ///< cells: one activation of SystemC's for so many squared
+
+    bool is_module(int x, int y) const;
+    /// Number of modules in an array.
+    std::size_t modules(int width, int height) const;
+};
+
 class Array : public sc_core::sc_module {
   public:
-    Array(sc_core::sc_module_name name, Environment& environment);
+    Array(sc_core::sc_module_name name, Environment& environment, const Granularity& granularity = {});
 
-    CellModule& cell(int x, int y) { return *cells_[index(x, y)]; }
-    const CellModule& cell(int x, int y) const { return *cells_[index(x, y)]; }
-    const std::vector<std::unique_ptr<CellModule>>& cells() const { return cells_; }
-    const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
+    Cell& cell(int x, int y) { return cells_[index(x, y)]; }
+    const Cell& cell(int x, int y) const { return cells_[index(x, y)]; }
+    /// Row by row.
+    std::vector<Cell>& cells() { return cells_; }
+    const std::vector<Cell>& cells() const { return cells_; }
+    /// Null for a cell in a tile.
+    CellModule* module(int x, int y);
+    std::size_t tiles() const { return tiles_.size(); }
+
+    std::deque<Link>& links() { return links_; }
+    const std::deque<Link>& links() const { return links_; }
     /// Row-major index of the cell that links()[link] leads to: where its buffers stand.
-    std::size_t sink_of(std::size_t link) const { return sinks_[link]; }
+    std::size_t sink_of(std::size_t link) const;
     /// The side of its source over which links()[link] leads.
-    Side side_of(std::size_t link) const { return sides_[link]; }
+    Side side_of(std::size_t link) const { return Side(ways_[link] % side_count); }
 
-    /// Joins a cell to something outside over the border; to be called before the simulation starts.
-    void join_border(int x, int y, Side side, LinkIn* from_outside, LinkOut* to_outside);
+    // Joins a cell to something outside; to be called before the simulation starts.
+    void join_border(int x, int y, Side side, Link& from_outside, Link& to_outside);
+    /// The row's first cell gets its load messages over this link.
+    void join_row(int y, Link& load);
 
     /// Begins the environment's phase: every cell runs in the next cycle.
     void begin_phase();
@@ -31,17 +55,26 @@ class Array : public sc_core::sc_module {
     /// All cells' schedules, joined in the order of the cells.
     std::uint64_t schedule_hash() const;
 
+    /// Bytes that an array takes before anything is loaded or under way, as far as they grow with it.
+    static double bytes(const Granularity& granularity, int width, int height, const BufferClasses& classes);
+
   private:
     std::size_t index(int x, int y) const {
         return std::size_t(y) * std::size_t(environment_.width()) + std::size_t(x);
     }
-    Link& make_link(CellModule& source, CellModule& sink, Side side);
+    void make_hosts(const Granularity& granularity);
+    void make_links();
+    void make_link(int x, int y, Side side);
+    void bind_in(int x, int y, Side side, Link& link);
+    void bind_out(int x, int y, Side side, Link& link);
+    void end_of_elaboration() override;
 
     Environment& environment_;
-    std::vector<std::unique_ptr<CellModule>> cells_;
-    std::vector<std::unique_ptr<Link>> links_;
-    std::vector<std::size_t> sinks_;  ///< by link
-    std::vector<Side> sides_;         ///< by link
+    std::vector<Cell> cells_;
+    std::vector<std::unique_ptr<CellTile>> tiles_;
+    std::map<std::size_t, std::unique_ptr<CellModule>> modules_;  ///< by the cell's index
+    std::deque<Link> links_;
+    std::vector<std::uint32_t> ways_;  ///< by link: index of its source · 4 + side
 };
 
 }  // namespace raycell

@@ -13,21 +13,23 @@ Cell::Cell(Environment& environment, int x, int y)
       ray_store_(environment.machine.ray_store, waiting_generations(environment.context),
                  environment.machine.slots) {}
 
-void Cell::connect(Side side, LinkIn* in, LinkOut* out) {
-    in_[std::size_t(side)] = in;
-    out_[std::size_t(side)] = out;
-    if (!in) return;
-    const bool horizontal = side == Side::east || side == Side::west;
-    for (int index = 0; index < env_.classes.count; ++index) {
-        std::uint32_t bits = index == env_.classes.answer ? 1U << (answer_bits + unsigned(side)) : 0;
-        const bool answers_only = index == env_.classes.answer && env_.classes.count > 1;
-        // What comes in at one side runs towards the other.
-        if (!answers_only && env_.classes.used(index, horizontal, opposite(side))) {
-            bits |= 1U << ray_inputs_.size();
-            ray_inputs_.push_back({in, index, side});
+void Cell::elaborate() {
+    for (int side = 0; side < side_count; ++side) {
+        Link* in = in_[std::size_t(side)];
+        if (!in) continue;
+        const bool horizontal = side % 2 == 0;
+        for (int index = 0; index < env_.classes.count; ++index) {
+            std::uint32_t bits = index == env_.classes.answer ? 1U << (answer_bits + unsigned(side)) : 0;
+            const bool answers_only = index == env_.classes.answer && env_.classes.count > 1;
+            // What comes in at one side runs towards the other.
+            if (!answers_only && env_.classes.used(index, horizontal, opposite(Side(side)))) {
+                bits |= 1U << ray_input_count_;
+                ray_inputs_[ray_input_count_++] = {Side(side), std::uint8_t(index)};
+            }
+            if (bits) in->watch(index, &pending_, bits);
         }
-        if (bits) in->watch(index, &pending_, bits);
     }
+    if (!load_in_) load_in_ = in_[std::size_t(Side::west)];
 }
 
 void Cell::begin_phase() {
@@ -78,27 +80,28 @@ void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_
 // -----------------------------------------------------------------------------------------------
 
 RayPacket* Cell::packet_at(std::size_t place) const {
-    if (place < ray_inputs_.size()) {
+    if (place < ray_input_count_) {
         const RayInput& input = ray_inputs_[place];
-        const Message message = input.link->front(input.index);
+        const Message message = link_of(place).front(input.index);
         return message.kind == Message::Kind::ray ? message.ray : nullptr;
     }
-    if (place == ray_inputs_.size()) return own_;
-    return ray_store_[std::uint32_t(place - ray_inputs_.size() - 1)].child;
+    if (place == ray_input_count_) return own_;
+    return ray_store_[std::uint32_t(place - ray_input_count_ - 1)].child;
 }
 
 void Cell::remove_from(std::size_t place) {
     moved_ = true;
-    if (place < ray_inputs_.size()) {
+    if (place < ray_input_count_) {
         const RayInput& input = ray_inputs_[place];
-        input.link->pop(input.index);
-        if (input.link->occupancy(input.index) > 0) want(env_.scheduler.now() + 1);
+        Link& link = link_of(place);
+        link.pop(input.index);
+        if (link.occupancy(input.index) > 0) want(env_.scheduler.now() + 1);
         return;
     }
-    if (place == ray_inputs_.size()) {
+    if (place == ray_input_count_) {
         own_ = nullptr;
     } else {
-        Slot& slot = ray_store_[std::uint32_t(place - ray_inputs_.size() - 1)];
+        Slot& slot = ray_store_[std::uint32_t(place - ray_input_count_ - 1)];
         slot.child = nullptr;
         slot.wait = {env_.scheduler.now(), Stall::shading};
     }
@@ -168,10 +171,9 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
         deliver(answer, now);
         return true;
     }
-    LinkOut* out = out_[std::size_t(route(answer))];
+    Link* out = out_[std::size_t(route(answer))];
     if (!out->can_send(env_.classes.answer, next_)) {
-        cause_ =
-            out->room(env_.classes.answer) == LinkOut::Room::full ? Stall::answer_full : Stall::answer_busy;
+        cause_ = out->room(env_.classes.answer) == Link::Room::full ? Stall::answer_full : Stall::answer_busy;
         return false;
     }
     ++env_.counters.answers_sent;
@@ -195,7 +197,7 @@ void Cell::move_answers(Cycle now) {
     for (int side = 0; side < side_count; ++side) {
         if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
         if (answers_moved_ >> unsigned(side) & 1) continue;
-        LinkIn* in = in_[std::size_t(side)];
+        Link* in = in_[std::size_t(side)];
         if (in->front(index).kind != Message::Kind::answer) continue;
         int place = count++;
         for (; place > 0; --place) {
@@ -211,7 +213,7 @@ void Cell::move_answers(Cycle now) {
     }
 }
 
-void Cell::move_answer(LinkIn& in, Wait& wait, Cycle now) {
+void Cell::move_answer(Link& in, Wait& wait, Cycle now) {
     const int index = env_.classes.answer;
     const Message message = in.front(index);
     const Cycle ready = in.arrival(index) + env_.costs().route_return;
@@ -231,10 +233,10 @@ void Cell::move_answer(LinkIn& in, Wait& wait, Cycle now) {
         env_.pools.answers.give_back(answer);
     } else {
         const Side way = route(*answer);
-        LinkOut* out = out_[std::size_t(way)];
+        Link* out = out_[std::size_t(way)];
         if (!out->can_send(index, next_)) {
             blocked_ = true;
-            stall(wait, out->room(index) == LinkOut::Room::full ? Stall::answer_full : Stall::answer_busy, id,
+            stall(wait, out->room(index) == Link::Room::full ? Stall::answer_full : Stall::answer_busy, id,
                   now);
             return;
         }
@@ -333,10 +335,10 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
             return ended;
         }
     }
-    LinkOut* out = out_[std::size_t(side)];
+    Link* out = out_[std::size_t(side)];
     const int index = env_.classes.ray(ray);
     if (!out->can_send(index, next_)) {
-        cause_ = out->room(index) == LinkOut::Room::full ? Stall::output_full : Stall::output_busy;
+        cause_ = out->room(index) == Link::Room::full ? Stall::output_full : Stall::output_busy;
         return false;
     }
     remove_from(place);
@@ -453,16 +455,16 @@ std::string describe_ray(const RayPacket& packet) {
 std::vector<std::string> Cell::describe_blocked() const {
     std::vector<std::string> lines;
     const std::string at = "cell (" + std::to_string(x_) + ", " + std::to_string(y_) + ") ";
-    for (std::size_t place = 0; place < ray_inputs_.size(); ++place) {
+    for (std::size_t place = 0; place < ray_input_count_; ++place) {
         const RayPacket* packet = packet_at(place);
         if (!packet) continue;
         const RayInput& input = ray_inputs_[place];
         lines.push_back(at + "input " + name_of(input.side) + " class " + std::to_string(input.index) +
-                        " since cycle " + std::to_string(input.link->arrival(input.index)) + ": " +
+                        " since cycle " + std::to_string(link_of(place).arrival(input.index)) + ": " +
                         describe_ray(*packet));
     }
     for (int side = 0; side < side_count; ++side) {
-        const LinkIn* in = in_[std::size_t(side)];
+        const Link* in = in_[std::size_t(side)];
         if (!in) continue;
         const Message message = in->front(env_.classes.answer);
         if (message.kind != Message::Kind::answer) continue;

@@ -1,4 +1,4 @@
-// A cell's behaviour: no process of its own, a host calls step() in every cycle in which something may have
+// A cell's behaviour: no process of its own, its host calls step() in every cycle in which something may have
 // changed.
 #pragma once
 
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cells/cell_host.hpp"
 #include "cells/cell_view.hpp"
 #include "cells/environment.hpp"
 #include "cells/link.hpp"
@@ -19,14 +20,21 @@ namespace raycell {
 /// store. Each unit does one thing at a time; costs come from the cost table. A ray stays in its input buffer
 /// while it is tested and until what it needs next is free: the output buffer, a slot, or the way for its
 /// answer.
-class Cell {
+class Cell final : public Client {
   public:
     Cell(Environment& environment, int x, int y);
 
-    /// Null links: the array's border.
-    void connect(Side side, LinkIn* in, LinkOut* out);
-    /// The way in of load messages: the row's distributor, or the west link.
-    void connect_load(LinkIn* load) { load_in_ = load; }
+    // Before the simulation starts. A side that is never connected is the array's border.
+    void set_host(CellHost& host) { host_ = &host; }
+    void connect_in(Side side, Link& in) { in_[std::size_t(side)] = &in; }
+    void connect_out(Side side, Link& out) { out_[std::size_t(side)] = &out; }
+    /// The way in of load messages; else the west link.
+    void connect_load(Link& load) { load_in_ = &load; }
+    /// All links are connected.
+    void elaborate();
+
+    /// Woken: the host is to call step().
+    void activate() override { host_->activate(*this); }
 
     /// Begins the environment's phase in the next cycle.
     void begin_phase();
@@ -52,11 +60,13 @@ class Cell {
     void add_waits(WaitMap& map) const;
 
     // What a probe sees, as it stands at the end of cycle `now`, the last one run (cell_view.cpp).
-    const LinkIn* input(Side side) const { return in_[std::size_t(side)]; }
-    const LinkIn* load_input() const { return load_in_; }
+    // The links, null over the border, also to set observers before a run.
+    Link* input(Side side) const { return in_[std::size_t(side)]; }
+    Link* output(Side side) const { return out_[std::size_t(side)]; }
+    Link* load_input() const { return load_in_; }
     const RayPacket* own_ray() const { return own_; }
     /// What the oldest message of a buffer waits for; `in` is one of the cell's inputs.
-    HeadStall stall_of(const LinkIn& in, int index, Cycle now) const;
+    HeadStall stall_of(const Link& in, int index, Cycle now) const;
     /// What a ray that stands in this cell waits for: in a buffer, the own ray or a slot's child.
     HeadStall stall_of(const RayPacket& packet, Cycle now) const;
     /// What a slot's child or its reply waits for.
@@ -69,10 +79,10 @@ class Cell {
 
   private:
     struct RayInput {
-        LinkIn* link;
-        int index;
         Side side;
+        std::uint8_t index;
     };
+    static constexpr std::size_t most_ray_inputs = 8;
     struct Traversal {
         RayPacket* packet = nullptr;
         Cycle done = 0;
@@ -93,16 +103,15 @@ class Cell {
     void finish_traversal(Cycle now);
     void start_traversal(Cycle now);
     void move_answers(Cycle now);
-    void move_answer(LinkIn& in, Wait& wait, Cycle now);
+    void move_answer(Link& in, Wait& wait, Cycle now);
     void move_replies(Cycle now);
     void move_rays(Cycle now);
     // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
     // then the slots' child registers (last, because the store may grow while places are gone through).
-    std::size_t place_count() const { return ray_inputs_.size() + ray_store_.touched() + 1; }
+    std::size_t place_count() const { return ray_input_count_ + ray_store_.touched() + 1; }
+    Link& link_of(std::size_t ray_input) const { return *in_[std::size_t(ray_inputs_[ray_input].side)]; }
     RayPacket* packet_at(std::size_t place) const;
-    bool nothing_at(std::size_t place) const {
-        return place < ray_inputs_.size() && !(pending_ >> place & 1);
-    }
+    bool nothing_at(std::size_t place) const { return place < ray_input_count_ && !(pending_ >> place & 1); }
     void remove_from(std::size_t place);
     void try_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool move_ray(RayPacket& packet, std::size_t place, Cycle now);
@@ -137,8 +146,8 @@ class Cell {
     Wait wait_of(const RayPacket& packet, std::size_t place) const {
         // Nobody notes down that a ray has come to the head of its buffer: the link knows.
         const bool arrived = packet.stage == RayPacket::Stage::untested && packet.wait.cause == Stall::none;
-        if (!arrived || place >= ray_inputs_.size()) return packet.wait;
-        return {ray_inputs_[place].link->head_since(ray_inputs_[place].index), Stall::traversal};
+        if (!arrived || place >= ray_input_count_) return packet.wait;
+        return {link_of(place).head_since(ray_inputs_[place].index), Stall::traversal};
     }
     /// An attempt to move failed because of `cause`.
     void stall(Wait& wait, Stall cause, std::uint64_t ray, Cycle now) {
@@ -180,10 +189,12 @@ class Cell {
     Environment& env_;
     int x_;
     int y_;
-    std::array<LinkIn*, side_count> in_{};
-    std::array<LinkOut*, side_count> out_{};
-    LinkIn* load_in_ = nullptr;
-    std::vector<RayInput> ray_inputs_;
+    CellHost* host_ = nullptr;
+    std::array<Link*, side_count> in_{};
+    std::array<Link*, side_count> out_{};
+    Link* load_in_ = nullptr;
+    std::array<RayInput, most_ray_inputs> ray_inputs_{};
+    std::size_t ray_input_count_ = 0;
     /// Bit per buffer that holds anything: ray inputs from 0, answers by side from `answer_bits`.
     std::uint32_t pending_ = 0;
     static constexpr unsigned answer_bits = 16;
@@ -223,8 +234,8 @@ class Cell {
 };
 
 /// Adds the buffer of a class at the end of a link, if it holds anything.
-void add_buffer(WaitMap& map, const LinkIn& link, int index, WaitGraph::Node node);
+void add_buffer(WaitMap& map, const Link& link, int index, WaitGraph::Node node);
 /// What a message waits for that wants to go over a link.
-Wants wants_buffer(const WaitMap& map, const LinkOut& out, int index, const std::string& name);
+Wants wants_buffer(const WaitMap& map, const Link& out, int index, const std::string& name);
 
 }  // namespace raycell

@@ -19,7 +19,7 @@ void Cell::step_load(Cycle now) {
     }
     LoadItem& item = *load_item_;
     const bool drops = item.kind == LoadItem::Kind::span ? item.span.last == x_ : x_ + 1 == env_.width();
-    LinkOut* east = out_[std::size_t(Side::east)];
+    Link* east = out_[std::size_t(Side::east)];
     if (!drops && !east->can_send(0, next_)) return;
     record(now, CellEvent::load, std::uint32_t(item.kind), 0, std::uint32_t(item.kind));
     take_load(item);

@@ -2,27 +2,30 @@
 // exchange with a user's own module.
 #pragma once
 
-#include <array>
+#include <memory>
 #include <systemc>
 
 #include "cells/cell.hpp"
 
 namespace raycell {
 
-/// Ports are bound to links; those over the array's border may stay unbound.
-class CellModule : public sc_core::sc_module, public Client {
+/// Ports are bound to links (cells/link.hpp); those over the array's border may stay unbound.
+class CellModule : public sc_core::sc_module, public CellHost {
   public:
     template <typename Interface>
     using Port = sc_core::sc_port<Interface, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
 
     SC_HAS_PROCESS(CellModule);
+    /// Runs a cell of somebody else's, who must keep it.
+    CellModule(sc_core::sc_module_name name, Environment& environment, Cell& cell);
+    /// Runs a cell of its own.
     CellModule(sc_core::sc_module_name name, Environment& environment, int x, int y);
 
     sc_core::sc_vector<Port<LinkIn>> in;    ///< by Side
     sc_core::sc_vector<Port<LinkOut>> out;  ///< by Side
     Port<LinkIn> load_in;                   ///< from the row's distributor (first column only)
 
-    void activate() override { wake_.notify(); }
+    void activate(Cell&) override { wake_.notify(); }
     Cell& cell() { return cell_; }
     const Cell& cell() const { return cell_; }
 
@@ -31,7 +34,8 @@ class CellModule : public sc_core::sc_module, public Client {
     void run();
 
     Environment& environment_;
-    Cell cell_;
+    std::unique_ptr<Cell> own_;  ///< null: somebody else's
+    Cell& cell_;
     sc_core::sc_event wake_;
 };
 

@@ -21,7 +21,7 @@ void Cell::move_overdue(Cycle now) {
     const int index = env_.classes.answer;
     for (int side = 0; side < side_count; ++side) {
         if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
-        const LinkIn* in = in_[std::size_t(side)];
+        const Link* in = in_[std::size_t(side)];
         if (in->front(index).kind != Message::Kind::answer) continue;
         add(in->arrival(index) + env_.costs().route_return, answer, std::size_t(side));
     }
@@ -38,7 +38,7 @@ void Cell::move_overdue(Cycle now) {
     std::sort(overdue.begin(), overdue.end());
     for (const auto& [since, kind, at] : overdue) {
         if (kind == answer) {
-            LinkIn& in = *in_[at];
+            Link& in = *in_[at];
             const int held = in.occupancy(index);
             move_answer(in, answer_waits_[at], now);
             if (in.occupancy(index) < held) answers_moved_ |= 1U << at;

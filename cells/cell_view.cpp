@@ -11,11 +11,11 @@ namespace raycell {
 HeadStall Cell::stall_of_answer(const Answer& answer, Cycle now) const {
     if (local(answer)) return store_port_ == now ? HeadStall::store_port : HeadStall::none;
     switch (out_[std::size_t(route(answer))]->room(env_.classes.answer)) {
-        case LinkOut::Room::full:
+        case Link::Room::full:
             return HeadStall::answer_full;
-        case LinkOut::Room::wires_busy:
+        case Link::Room::wires_busy:
             return HeadStall::answer_wires;
-        case LinkOut::Room::free:
+        case Link::Room::free:
             break;
     }
     return HeadStall::none;
@@ -23,10 +23,10 @@ HeadStall Cell::stall_of_answer(const Answer& answer, Cycle now) const {
 
 namespace {
 
-HeadStall stall_of_output(LinkOut::Room room) {
-    return room == LinkOut::Room::full         ? HeadStall::output_full
-           : room == LinkOut::Room::wires_busy ? HeadStall::wires_busy
-                                               : HeadStall::none;
+HeadStall stall_of_output(Link::Room room) {
+    return room == Link::Room::full         ? HeadStall::output_full
+           : room == Link::Room::wires_busy ? HeadStall::wires_busy
+                                            : HeadStall::none;
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ HeadStall Cell::stall_of(const RayPacket& packet, Cycle now) const {
     return store_port_ == now ? HeadStall::store_port : HeadStall::none;
 }
 
-HeadStall Cell::stall_of(const LinkIn& in, int index, Cycle now) const {
+HeadStall Cell::stall_of(const Link& in, int index, Cycle now) const {
     const Message head = in.front(index);
     switch (head.kind) {
         case Message::Kind::ray:
@@ -116,7 +116,7 @@ UnitView Cell::loading_unit(Cycle now) const {
 
 Cycle Cell::oldest_arrival() const {
     Cycle oldest = never;
-    for (const LinkIn* in : in_) {
+    for (const Link* in : in_) {
         for (int index = 0; in && index < env_.classes.count; ++index) {
             if (in->front(index).kind != Message::Kind::none) oldest = std::min(oldest, in->arrival(index));
         }

@@ -10,10 +10,6 @@ namespace {
 
 using Kind = WaitGraph::Kind;
 
-/// The same for a link seen from either side.
-const void* identity(const LinkIn* link) { return dynamic_cast<const void*>(link); }
-const void* identity(const LinkOut* link) { return dynamic_cast<const void*>(link); }
-
 Cycle later(Cycle a, Cycle b) { return b == never ? a : std::max(a, b); }
 
 }  // namespace
@@ -34,7 +30,7 @@ void Cell::add_places(WaitMap& map) const {
         return n;
     };
     for (int side = 0; side < side_count; ++side) {
-        if (const LinkIn* in = in_[std::size_t(side)]) {
+        if (const Link* in = in_[std::size_t(side)]) {
             for (int index = 0; index < env_.classes.count; ++index) {
                 WaitGraph::Node buffer = node(Kind::buffer, buffer_name(Side(side), index), "", 0);
                 buffer.side = side;
@@ -63,13 +59,13 @@ void Cell::add_places(WaitMap& map) const {
     }
 }
 
-void add_buffer(WaitMap& map, const LinkIn& link, int index, WaitGraph::Node node) {
+void add_buffer(WaitMap& map, const Link& link, int index, WaitGraph::Node node) {
     const int count = link.occupancy(index);
     if (count == 0) return;
     // The last message to move into its place, or to become the first.
     node.since = later(0, link.last_pop(index));
     for (int place = 0; place < count; ++place) {
-        const LinkIn::Held held = link.held(index, place);
+        const Link::Held held = link.held(index, place);
         node.since = std::max(node.since, held.visible);
         if (place > 0) continue;
         if (held.message.kind == Message::Kind::ray) {
@@ -80,7 +76,7 @@ void add_buffer(WaitMap& map, const LinkIn& link, int index, WaitGraph::Node nod
         }
     }
     if (count > 1) node.holds += ", " + std::to_string(count - 1) + " behind it";
-    const WaitGraph::Index added = map.add(identity(&link), std::uint32_t(index), std::move(node));
+    const WaitGraph::Index added = map.add(&link, std::uint32_t(index), std::move(node));
     for (int place = 0; place < count; ++place) {
         const Message message = link.held(index, place).message;
         if (message.kind == Message::Kind::ray) map.place(message.ray->ray, added);
@@ -88,9 +84,9 @@ void add_buffer(WaitMap& map, const LinkIn& link, int index, WaitGraph::Node nod
     }
 }
 
-Wants wants_buffer(const WaitMap& map, const LinkOut& out, int index, const std::string& name) {
+Wants wants_buffer(const WaitMap& map, const Link& out, int index, const std::string& name) {
     if (!out.full(index)) return Wants::nothing(name + ", which has room");
-    const auto buffer = map.find(identity(&out), Kind::buffer, std::uint32_t(index));
+    const auto buffer = map.find(&out, Kind::buffer, std::uint32_t(index));
     if (!buffer) return Wants::nothing(name);
     return {false, false, {*buffer}, name};
 }
@@ -210,10 +206,10 @@ Wants Cell::wants_of_slot(const WaitMap& map, std::uint32_t index) const {
 
 void Cell::add_waits(WaitMap& map) const {
     for (int side = 0; side < side_count; ++side) {
-        const LinkIn* in = in_[std::size_t(side)];
+        const Link* in = in_[std::size_t(side)];
         if (!in) continue;
         for (int index = 0; index < env_.classes.count; ++index) {
-            const auto node = map.find(identity(in), Kind::buffer, std::uint32_t(index));
+            const auto node = map.find(in, Kind::buffer, std::uint32_t(index));
             if (!node) continue;
             const Message head = in->front(index);
             map.set(*node, head.kind == Message::Kind::ray      ? wants_ray(map, *head.ray)

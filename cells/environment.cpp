@@ -5,10 +5,10 @@
 
 namespace raycell {
 
-void Environment::stall(Link& link) const {
+void Environment::stall(Link& link, const std::string& name) const {
     if (!(machine.stall > 0)) return;
     std::uint64_t who = 0;
-    for (const char c : link.name()) who = mix_bits(who, std::uint64_t(c));
+    for (const char c : name) who = mix_bits(who, std::uint64_t(c));
     link.set_stall(machine.stall, machine.seed, who);
 }
 

@@ -77,8 +77,8 @@ struct Environment {
     const CostTable& costs() const { return machine.costs; }
     int cycles_for(int message_bits_) const { return link_cycles(message_bits_, machine.link_bits); }
     int load_bits(const LoadItem& item) const;
-    /// Gives a link its random stalls, if there are any; by its name, so set that first.
-    void stall(Link& link) const;
+    /// Gives a link its random stalls, if there are any, by its name.
+    void stall(Link& link, const std::string& name) const;
 };
 
 }  // namespace raycell

@@ -1,23 +1,59 @@
 #include "cells/link.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "model/stall.hpp"
 
 namespace raycell {
 
-Link::Link(Scheduler& scheduler, int classes, int depth)
-    : scheduler_(scheduler), buffers_(std::size_t(classes)), depth_(depth) {}
+Link::Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used)
+    : scheduler_(scheduler), depth_(std::uint16_t(depth)), classes_(std::uint8_t(classes)) {
+    if (depth < 1 || depth > most_depth || classes > most_classes)
+        throw std::invalid_argument("a link of " + std::to_string(depth) +
+                                    " messages a buffer; expected 1 to " + std::to_string(most_depth));
+    places_.fill(no_buffer);
+    std::uint8_t buffers = 0;
+    for (int index = 0; index < classes; ++index) {
+        if (used >> index & 1) places_[std::size_t(index)] = buffers++;
+    }
+    buffers_ = std::make_unique<Buffer[]>(buffers);
+}
+
+std::size_t Link::bytes(std::uint32_t used) {
+    constexpr std::size_t allocation = 16;  // what the heap adds
+    return sizeof(Link) + allocation + std::size_t(__builtin_popcount(used)) * sizeof(Buffer);
+}
+
+Link::Extras& Link::extras() {
+    if (!extras_) extras_ = std::make_unique<Extras>();
+    return *extras_;
+}
+
+void Link::report_arrivals(Arrivals& arrivals, std::uint32_t port) {
+    extras().arrivals = &arrivals;
+    extras().port = port;
+}
+
+void Link::set_stall(double probability, std::uint64_t seed, std::uint64_t who) {
+    extras().stall = probability;
+    extras().stall_seed = seed;
+    extras().stall_who = who;
+}
+
+void Link::set_observer(LinkObserver* observer) { extras().observer = observer; }
+
+void Link::set_name(std::string name) { extras().name = std::move(name); }
 
 bool Link::can_send(int index, Cycle& retry) {
-    Buffer& buffer = buffers_[std::size_t(index)];
+    Buffer& b = buffer(index);
     const Cycle now = scheduler_.now();
-    const std::uint32_t still_seen = buffer.last_pop == now ? buffer.popped_now : 0;
-    if (buffer.count + still_seen >= std::uint32_t(depth_)) {
+    const std::uint32_t still_seen = b.still_seen(now);
+    if (b.count + still_seen >= depth_) {
         if (still_seen > 0) {
             retry = std::min(retry, now + 1);
         } else {
-            buffer.sender_waits = true;
+            b.sender_waits = true;
         }
         return false;
     }
@@ -28,102 +64,104 @@ bool Link::can_send(int index, Cycle& retry) {
     return true;
 }
 
-LinkOut::Room Link::room(int index) const {
-    const Buffer& buffer = buffers_[std::size_t(index)];
+Link::Room Link::room(int index) const {
+    const Buffer& b = buffer(index);
     const Cycle now = scheduler_.now();
-    const std::uint32_t still_seen = buffer.last_pop == now ? buffer.popped_now : 0;
-    if (buffer.count + still_seen >= std::uint32_t(depth_)) return Room::full;
+    if (b.count + b.still_seen(now) >= depth_) return Room::full;
     return wires_free_ > now ? Room::wires_busy : Room::free;
 }
 
+/// Room for more messages, up to `depth`; most buffers of a deep machine never fill.
+void Link::Buffer::grow(int depth) {
+    const auto larger = std::uint16_t(std::min(depth, 2 * int(capacity)));
+    auto entries = std::make_unique<Entry[]>(larger);
+    for (std::uint32_t i = 0; i < count; ++i) entries[i] = at(i);
+    ring = std::move(entries);
+    head = 0;
+    capacity = larger;
+}
+
 void Link::send(int index, const Message& message, int cycles) {
-    Buffer& buffer = buffers_[std::size_t(index)];
+    Buffer& b = buffer(index);
     const Cycle now = scheduler_.now();
-    if (buffer.ring.size() < std::size_t(depth_) && buffer.count == buffer.ring.size()) {
-        // Unroll the ring before it grows, so that order is kept.
-        std::rotate(buffer.ring.begin(), buffer.ring.begin() + buffer.head, buffer.ring.end());
-        buffer.head = 0;
-        buffer.ring.emplace_back();
+    if (b.count == b.capacity) b.grow(depth_);
+    if (extras_ && extras_->stall > 0) {
+        cycles +=
+            int(stall_cycles(extras_->stall, extras_->stall_seed, extras_->stall_who, extras_->sends++));
     }
-    if (stall_ > 0) cycles += int(stall_cycles(stall_, stall_seed_, stall_who_, sends_++));
-    const std::size_t place = (buffer.head + buffer.count) % buffer.ring.size();
-    buffer.ring[place] = {message, now, now + Cycle(cycles)};
-    ++buffer.count;
-    if (buffer.pending) *buffer.pending |= buffer.pending_bits;
-    ++buffer.statistics.sent;
-    // A place read in this cycle still counts: the peak must not depend on which end ran first.
-    const std::uint32_t still_seen = buffer.last_pop == now ? buffer.popped_now : 0;
-    buffer.statistics.peak = std::max(buffer.statistics.peak, int(buffer.count + still_seen));
     wires_free_ = now + Cycle(cycles);
+    b.at(b.count) = {message, wires_free_};
+    ++b.count;
+    if (pending_) *pending_ |= b.pending_bits;
+    ++b.sent;
+    b.occupied -= now;
+    // A place read in this cycle still counts: the peak must not depend on which end ran first.
+    b.peak = std::max(b.peak, std::uint16_t(b.count + b.still_seen(now)));
     busy_cycles_ += std::uint64_t(cycles);
-    if (observer_) observer_->sent(*this, index, message, cycles, now);
-    if (arrivals_) arrivals_->arrives(port_, index, wires_free_);
+    if (extras_) {
+        if (extras_->observer) extras_->observer->sent(*this, index, message, cycles, now);
+        if (extras_->arrivals) extras_->arrivals->arrives(extras_->port, index, wires_free_);
+    }
     if (sink_) scheduler_.wake(*sink_, wires_free_);
 }
 
 void Link::watch(int index, std::uint32_t* pending, std::uint32_t bits) {
-    Buffer& buffer = buffers_[std::size_t(index)];
-    buffer.pending = pending;
-    buffer.pending_bits = bits;
-    if (buffer.count > 0) *pending |= bits;
+    pending_ = pending;
+    Buffer& b = buffer(index);
+    b.pending_bits = bits;
+    if (b.count > 0) *pending |= bits;
 }
 
 Link::ClassStatistics Link::statistics(int index) const {
-    const Buffer& buffer = buffers_[std::size_t(index)];
-    ClassStatistics sum = buffer.statistics;
-    for (std::uint32_t i = 0; i < buffer.count; ++i) {
-        sum.occupied_cycles += scheduler_.now() - buffer.ring[(buffer.head + i) % buffer.ring.size()].sent;
-    }
+    ClassStatistics sum;
+    const Buffer* b = find(index);
+    if (!b) return sum;
+    sum.sent = b->sent;
+    sum.delivered = b->sent - b->count;
+    sum.peak = b->peak;
+    sum.occupied_cycles = b->occupied + b->count * scheduler_.now();
     return sum;
 }
 
+/// What stands in a buffer then counts as sent when the new phase begins.
 void Link::reset_statistics() {
     busy_cycles_ = 0;
-    for (Buffer& buffer : buffers_) {
-        buffer.statistics = ClassStatistics();
-        buffer.statistics.peak = int(buffer.count);
+    for (int index = 0; index < classes_; ++index) {
+        if (!find(index)) continue;
+        Buffer& b = buffer(index);
+        b.sent = b.count;
+        b.occupied = -(b.count * scheduler_.now());
+        b.peak = b.count;
     }
 }
 
-Message Link::front(int index) const {
-    const Buffer& buffer = buffers_[std::size_t(index)];
-    if (buffer.count == 0) return {};
-    const Entry& entry = buffer.ring[buffer.head];
-    return entry.visible <= scheduler_.now() ? entry.message : Message();
-}
-
-Link::Held Link::held(int index, int place) const {
-    const Buffer& buffer = buffers_[std::size_t(index)];
-    const Entry& entry = buffer.ring[(buffer.head + std::uint32_t(place)) % buffer.ring.size()];
-    return {entry.message, entry.visible};
-}
-
-Cycle Link::arrival(int index) const {
-    const Buffer& buffer = buffers_[std::size_t(index)];
-    return buffer.count == 0 ? never : buffer.ring[buffer.head].visible;
-}
+Link::Held Link::held(int index, int place) const { return buffer(index).at(std::uint32_t(place)); }
 
 Cycle Link::head_since(int index) const {
-    const Buffer& buffer = buffers_[std::size_t(index)];
-    return buffer.last_pop == never ? arrival(index) : std::max(arrival(index), buffer.last_pop);
+    const Cycle popped = last_pop(index);
+    return popped == never ? arrival(index) : std::max(arrival(index), popped);
+}
+
+Cycle Link::last_pop(int index) const {
+    const Buffer* b = find(index);
+    return b ? b->last_pop : never;
 }
 
 void Link::pop(int index) {
-    Buffer& buffer = buffers_[std::size_t(index)];
+    Buffer& b = buffer(index);
     const Cycle now = scheduler_.now();
-    if (observer_) observer_->popped(*this, index, buffer.ring[buffer.head].message, now);
-    buffer.statistics.occupied_cycles += now - buffer.ring[buffer.head].sent;
-    ++buffer.statistics.delivered;
-    buffer.head = std::uint32_t((buffer.head + 1) % buffer.ring.size());
-    --buffer.count;
-    if (buffer.count == 0 && buffer.pending) *buffer.pending &= ~buffer.pending_bits;
-    if (buffer.last_pop != now) {
-        buffer.last_pop = now;
-        buffer.popped_now = 0;
+    if (extras_ && extras_->observer) extras_->observer->popped(*this, index, b.at(0).message, now);
+    b.occupied += now;
+    b.head = std::uint16_t(b.wrapped(1));
+    --b.count;
+    if (b.count == 0 && pending_) *pending_ &= ~b.pending_bits;
+    if (b.last_pop != now) {
+        b.last_pop = now;
+        b.popped_now = 0;
     }
-    ++buffer.popped_now;
-    if (buffer.sender_waits) {
-        buffer.sender_waits = false;
+    ++b.popped_now;
+    if (b.sender_waits) {
+        b.sender_waits = false;
         if (source_) scheduler_.wake(*source_, now + 1);
     }
 }

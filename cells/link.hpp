@@ -2,9 +2,10 @@
 // (paper, section 4.3: "buffers shared by neighbouring cells").
 #pragma once
 
+#include <array>
+#include <memory>
 #include <string>
 #include <systemc>
-#include <vector>
 
 #include "cells/message.hpp"
 #include "cells/observer.hpp"
@@ -12,52 +13,33 @@
 
 namespace raycell {
 
-/// What the sending side sees.
+/// What the sending side sees, for the ports of modules.
 class LinkOut : virtual public sc_core::sc_interface {
   public:
     /// Whether a message of this class can start now: wires idle and room in its buffer, as they stood when
     /// the cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is
     /// woken in the cycle after room was made.
     virtual bool can_send(int index, Cycle& retry) = 0;
-    /// What can_send() would say, without asking to be woken: for whoever watches. A channel that can't tell
-    /// says free.
-    enum class Room : std::uint8_t { free, wires_busy, full };
-    virtual Room room(int /*index*/) const { return Room::free; }
     /// Starts a message; it is visible at the far end after its link cycles.
     virtual void send(int index, const Message& message, int cycles) = 0;
-    /// Whether the buffer of a class has no room left; for looking at a machine, not for sending.
-    virtual bool full(int index) const = 0;
 };
 
-/// What the receiving side sees.
+/// What the receiving side sees, for the ports of modules.
 class LinkIn : virtual public sc_core::sc_interface {
   public:
     /// The oldest message of a class if it has arrived, else an empty one.
     virtual Message front(int index) const = 0;
     /// Cycle in which the oldest message arrived.
     virtual Cycle arrival(int index) const = 0;
-    /// Cycle from which on the oldest message has been both arrived and the oldest.
-    virtual Cycle head_since(int index) const { return arrival(index); }
     virtual void pop(int index) = 0;
     /// Messages in a buffer, those still on the wires included.
     virtual int occupancy(int index) const = 0;
-    /// What stands in a buffer, oldest first, for looking at a machine; `place` below occupancy().
-    struct Held {
-        Message message;
-        Cycle visible = 0;  ///< when it arrived, or will
-    };
-    virtual Held held(int index, int place) const = 0;
-    /// Cycle of the last pop of a class, `never` before the first.
-    virtual Cycle last_pop(int index) const = 0;
-    /// Asks the channel to keep `bits` set in `pending` while the buffer of a class holds anything, on the
-    /// wires or arrived: so a cell need not look into empty buffers. A channel that can't leaves them set for
-    /// ever.
-    virtual void watch(int /*index*/, std::uint32_t* pending, std::uint32_t bits) { *pending |= bits; }
 };
 
 /// The channel. Writes and reads of a cycle show in the next one, so the order in which cells run does not
-/// matter.
-class Link : public LinkOut, public LinkIn {
+/// matter. Final, so that a cell's calls need no table; an array has four of them per cell, so what few links
+/// have is kept apart, and classes that a link never carries have no buffer.
+class Link final : public LinkOut, public LinkIn {
   public:
     struct ClassStatistics {
         std::uint64_t sent = 0;
@@ -65,8 +47,12 @@ class Link : public LinkOut, public LinkIn {
         std::uint64_t occupied_cycles = 0;  ///< sum over messages of the cycles that they took up a place
         int peak = 0;
     };
+    static constexpr int most_classes = 5;
+    static constexpr int most_depth = 65535;
+    static constexpr std::uint32_t all_classes = ~std::uint32_t(0);
 
-    Link(Scheduler& scheduler, int classes, int depth);
+    /// `used`: a bit for each of the classes that the link carries.
+    Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used = all_classes);
 
     void connect_source(Client& source) { source_ = &source; }
     void connect_sink(Client& sink) { sink_ = &sink; }
@@ -76,37 +62,52 @@ class Link : public LinkOut, public LinkIn {
         virtual ~Arrivals() = default;
         virtual void arrives(std::uint32_t port, int index, Cycle visible) = 0;
     };
-    void report_arrivals(Arrivals& arrivals, std::uint32_t port) {
-        arrivals_ = &arrivals;
-        port_ = port;
-    }
+    void report_arrivals(Arrivals& arrivals, std::uint32_t port);
     /// Random stalls on the wires (MachineSettings::stall); `who` tells links apart.
-    void set_stall(double probability, std::uint64_t seed, std::uint64_t who) {
-        stall_ = probability;
-        stall_seed_ = seed;
-        stall_who_ = who;
-    }
+    void set_stall(double probability, std::uint64_t seed, std::uint64_t who);
     /// Null: nobody watches.
-    void set_observer(LinkObserver* observer) { observer_ = observer; }
-    /// The name as "cell_3_4.east", for reports.
-    void set_name(std::string name) { name_ = std::move(name); }
-    const std::string& name() const { return name_; }
+    void set_observer(LinkObserver* observer);
+    /// For reports; those between the cells of an array have none.
+    void set_name(std::string name);
+    std::string name() const { return extras_ ? extras_->name : std::string(); }
 
     bool can_send(int index, Cycle& retry) override;
-    Room room(int index) const override;
+    /// What can_send() would say, without asking to be woken: for whoever watches.
+    enum class Room : std::uint8_t { free, wires_busy, full };
+    Room room(int index) const;
     void send(int index, const Message& message, int cycles) override;
-    Message front(int index) const override;
-    Cycle arrival(int index) const override;
-    Cycle head_since(int index) const override;
+    Message front(int index) const override {
+        const Buffer* buffer = find(index);
+        if (!buffer || buffer->count == 0) return {};
+        const Entry& entry = buffer->at(0);
+        return entry.visible <= scheduler_.now() ? entry.message : Message();
+    }
+    Cycle arrival(int index) const override {
+        const Buffer* buffer = find(index);
+        return buffer && buffer->count > 0 ? buffer->at(0).visible : never;
+    }
+    /// Cycle from which on the oldest message has been both arrived and the oldest.
+    Cycle head_since(int index) const;
     void pop(int index) override;
-    void watch(int index, std::uint32_t* pending, std::uint32_t bits) override;
-    int occupancy(int index) const override { return int(buffers_[std::size_t(index)].count); }
+    /// Asks the link to keep `bits` set in `pending` while the buffer of a class holds anything, on the wires
+    /// or arrived: so a cell need not look into empty buffers. One `pending` for all classes.
+    void watch(int index, std::uint32_t* pending, std::uint32_t bits);
+    int occupancy(int index) const override {
+        const Buffer* buffer = find(index);
+        return buffer ? buffer->count : 0;
+    }
+    /// Whether the buffer of a class has no room left; for looking at a machine, not for sending.
+    bool full(int index) const { return occupancy(index) >= depth_; }
+    /// What stands in a buffer, oldest first, for looking at a machine; `place` below occupancy().
+    struct Held {
+        Message message;
+        Cycle visible = 0;  ///< when it arrived, or will
+    };
+    Held held(int index, int place) const;
+    /// Cycle of the last pop of a class, `never` before the first.
+    Cycle last_pop(int index) const;
 
-    bool full(int index) const override { return occupancy(index) >= depth_; }
-    Held held(int index, int place) const override;
-    Cycle last_pop(int index) const override { return buffers_[std::size_t(index)].last_pop; }
-
-    int classes() const { return int(buffers_.size()); }
+    int classes() const { return classes_; }
     int depth() const { return depth_; }
     /// Since the last reset; what still stands in a buffer counts up to now.
     ClassStatistics statistics(int index) const;
@@ -114,39 +115,66 @@ class Link : public LinkOut, public LinkIn {
     void reset_statistics();
     std::uint64_t busy_cycles() const { return busy_cycles_; }
 
+    /// Bytes of an unwatched link with empty buffers.
+    static std::size_t bytes(std::uint32_t used);
+
   private:
-    struct Entry {
-        Message message;
-        Cycle sent = 0;
-        Cycle visible = 0;
-    };
+    using Entry = Held;
     struct Buffer {
-        std::vector<Entry> ring;  ///< grows to `depth` at most
-        std::uint32_t head = 0;
-        std::uint32_t count = 0;
-        std::uint32_t popped_now = 0;  ///< in cycle last_pop: not yet room for the sender
+        Entry first;                    ///< all there is at depth 1
+        std::unique_ptr<Entry[]> ring;  ///< once more than one has been needed
         Cycle last_pop = never;
-        bool sender_waits = false;
+        std::uint64_t sent = 0;
+        std::uint64_t occupied = 0;  ///< cycles of pops less cycles of sends: needs no note of when
         std::uint32_t pending_bits = 0;
-        std::uint32_t* pending = nullptr;  ///< the sink's
-        ClassStatistics statistics;
+        std::uint16_t capacity = 1;
+        std::uint16_t head = 0;
+        std::uint16_t count = 0;
+        std::uint16_t popped_now = 0;  ///< in cycle last_pop: not yet room for the sender
+        std::uint16_t peak = 0;
+        bool sender_waits = false;
+
+        Entry& at(std::uint32_t place) { return ring ? ring[wrapped(place)] : first; }
+        const Entry& at(std::uint32_t place) const { return ring ? ring[wrapped(place)] : first; }
+        std::uint32_t wrapped(std::uint32_t place) const {
+            const std::uint32_t sum = head + place;
+            return sum < capacity ? sum : sum - capacity;
+        }
+        std::uint32_t still_seen(Cycle now) const { return last_pop == now ? popped_now : 0; }
+        void grow(int depth);
+    };
+    /// What only links have that are watched, stalled or at the border.
+    struct Extras {
+        Arrivals* arrivals = nullptr;
+        LinkObserver* observer = nullptr;
+        std::uint32_t port = 0;
+        double stall = 0;
+        std::uint64_t stall_seed = 0;
+        std::uint64_t stall_who = 0;
+        std::uint64_t sends = 0;
+        std::string name;
     };
 
+    static constexpr std::uint8_t no_buffer = 255;
+    const Buffer* find(int index) const {
+        const std::uint8_t place = places_[std::size_t(index)];
+        return place == no_buffer ? nullptr : &buffers_[place];
+    }
+    Buffer& buffer(int index) { return buffers_[places_[std::size_t(index)]]; }
+    const Buffer& buffer(int index) const { return buffers_[places_[std::size_t(index)]]; }
+    Extras& extras();
+
     Scheduler& scheduler_;
+    std::unique_ptr<Buffer[]> buffers_;
+    Cycle wires_free_ = 0;
     Client* source_ = nullptr;
     Client* sink_ = nullptr;
-    Arrivals* arrivals_ = nullptr;
-    LinkObserver* observer_ = nullptr;
-    std::uint32_t port_ = 0;
-    std::vector<Buffer> buffers_;
-    int depth_;
-    Cycle wires_free_ = 0;
+    std::uint32_t* pending_ = nullptr;  ///< the sink's
+    std::unique_ptr<Extras> extras_;
     std::uint64_t busy_cycles_ = 0;
-    double stall_ = 0;
-    std::uint64_t stall_seed_ = 0;
-    std::uint64_t stall_who_ = 0;
-    std::uint64_t sends_ = 0;
-    std::string name_;
+    std::uint16_t depth_;
+    std::uint8_t classes_;
+    std::array<std::uint8_t, most_classes> places_;  ///< of the classes' buffers
 };
 
 }  // namespace raycell

@@ -66,9 +66,9 @@ std::uint64_t picoseconds(const sc_core::sc_time& period) {
     return std::uint64_t(std::llround(period.to_seconds() * 1e12));
 }
 
-Probe::Probe(std::vector<const CellModule*> cells, const Environment& environment, std::FILE* file,
+Probe::Probe(std::vector<const Cell*> cells, const Environment& environment, std::FILE* file,
              const ProbeSettings& settings, std::function<void(const std::string&)> warn)
-    : modules_(std::move(cells)),
+    : watched_(std::move(cells)),
       env_(environment),
       settings_(settings),
       warn_(std::move(warn)),
@@ -82,8 +82,8 @@ void Probe::declare() {
     declared_ = true;
     vcd_.open_scope("raycell");
     phase_ = vcd_.add_word("phase", phase_names);
-    cells_.reserve(modules_.size());
-    for (const CellModule* module : modules_) declare_cell(*module);
+    cells_.reserve(watched_.size());
+    for (const Cell* cell : watched_) declare_cell(*cell);
     vcd_.close_scope();
 }
 
@@ -97,7 +97,7 @@ Probe::UnitSignals Probe::declare_unit(const char* name, bool of_rays) {
     return unit;
 }
 
-void Probe::declare_buffer(CellSignals& cell, const LinkIn& link, int index, const char* name) {
+void Probe::declare_buffer(CellSignals& cell, const Link& link, int index, const char* name) {
     vcd_.open_scope(name);
     BufferSignals buffer{};
     buffer.link = &link;
@@ -113,7 +113,7 @@ void Probe::declare_buffer(CellSignals& cell, const LinkIn& link, int index, con
 }
 
 void Probe::declare_side(CellSignals& cell, int side) {
-    const LinkIn* link = cell.module->cell().input(Side(side));
+    const Link* link = cell.cell->input(Side(side));
     if (!link) return;
     const BufferClasses& classes = env_.classes;
     const bool horizontal = side % 2 == 0;
@@ -126,13 +126,12 @@ void Probe::declare_side(CellSignals& cell, int side) {
     vcd_.close_scope();
 }
 
-void Probe::declare_cell(const CellModule& module) {
-    const Cell& cell = module.cell();
+void Probe::declare_cell(const Cell& cell) {
     CellSignals& signals = cells_.emplace_back();
-    signals.module = &module;
+    signals.cell = &cell;
     vcd_.open_scope("cell_" + std::to_string(cell.x()) + "_" + std::to_string(cell.y()));
     for (int side = 0; side < side_count; ++side) declare_side(signals, side);
-    const LinkIn* load = cell.load_input();
+    const Link* load = cell.load_input();
     if (load && load != cell.input(Side::west)) {
         vcd_.open_scope("distributor");
         declare_buffer(signals, *load, 0, "load");
@@ -196,7 +195,7 @@ void Probe::sample_slots(const CellSignals& signals, const Cell& cell, Cycle now
 }
 
 void Probe::sample_cell(CellSignals& signals, Cycle now) {
-    const Cell& cell = signals.module->cell();
+    const Cell& cell = *signals.cell;
     for (BufferSignals& buffer : signals.buffers) sample_buffer(cell, buffer, now);
     sample_unit(signals.traversal, cell.traversal_unit(), true);
     sample_unit(signals.shading, cell.shading_unit(), true);
@@ -216,7 +215,7 @@ void Probe::sample_all(Cycle now, bool everything) {
         const auto changed = [](const BufferSignals& buffer) {
             return buffer.link->occupancy(buffer.index) != buffer.last_occupancy;
         };
-        if (everything || cell.module->woken() == now ||
+        if (everything || cell.cell->woken() == now ||
             std::any_of(cell.buffers.begin(), cell.buffers.end(), changed)) {
             sample_cell(cell, now);
         }

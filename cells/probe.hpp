@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cells/cell_module.hpp"
+#include "cells/cell.hpp"
 #include "cells/vcd_writer.hpp"
 
 namespace raycell {
@@ -22,7 +22,7 @@ class Probe {
   public:
     /// Cells without a connection on a side have no signals there. The cells must be elaborated before
     /// the first sample. `warn` is called with what the user should know about the dump's size.
-    Probe(std::vector<const CellModule*> cells, const Environment& environment, std::FILE* file,
+    Probe(std::vector<const Cell*> cells, const Environment& environment, std::FILE* file,
           const ProbeSettings& settings, std::function<void(const std::string&)> warn);
 
     /// For the scheduler's sampler; and once more after the last cycle.
@@ -39,7 +39,7 @@ class Probe {
   private:
     using Signal = VcdWriter::Signal;
     struct BufferSignals {
-        const LinkIn* link;
+        const Link* link;
         int index;
         int last_occupancy;
         Signal full, occupancy, type, ray, stall;
@@ -51,7 +51,7 @@ class Probe {
         Signal state, ray, child, stall;
     };
     struct CellSignals {
-        const CellModule* module;
+        const Cell* cell;
         std::vector<BufferSignals> buffers;
         UnitSignals traversal, shading, loading;
         Signal own_type, own_ray, own_stall;
@@ -60,9 +60,9 @@ class Probe {
     };
 
     void declare();
-    void declare_cell(const CellModule& module);
+    void declare_cell(const Cell& cell);
     void declare_side(CellSignals& cell, int side);
-    void declare_buffer(CellSignals& cell, const LinkIn& link, int index, const char* name);
+    void declare_buffer(CellSignals& cell, const Link& link, int index, const char* name);
     UnitSignals declare_unit(const char* name, bool of_rays);
     void begin(Cycle cycle);
     void sample_cell(CellSignals& cell, Cycle now);
@@ -73,7 +73,7 @@ class Probe {
     void look_at_size(Cycle now);
     double expected_bytes(Cycle now) const;
 
-    std::vector<const CellModule*> modules_;
+    std::vector<const Cell*> watched_;
     const Environment& env_;
     ProbeSettings settings_;
     std::function<void(const std::string&)> warn_;

@@ -1,6 +1,8 @@
 // The ray store: M slots for rays that wait for answers (paper, section 4.2).
 #pragma once
 
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,9 +27,10 @@ struct Slot {
     dvec3 colour[2] = {dvec3(0), dvec3(0)};
     RayPacket* child = nullptr;  ///< on its way out of the cell, one at a time
     dvec3 result{0, 0, 0};
-    Cycle since = 0;    ///< when the ray was accepted
-    Cycle changed = 0;  ///< when it came into its state
-    Wait wait;          ///< for the shading unit or, with its answer, for a way out
+    Cycle since = 0;              ///< when the ray was accepted
+    Cycle changed = 0;            ///< when it came into its state
+    Wait wait;                    ///< for the shading unit or, with its answer, for a way out
+    std::uint32_t next_free = 0;  ///< of an empty slot: the one that became free before it
 };
 
 /// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest
@@ -58,18 +61,21 @@ class RayStore {
     Cycle waiting_cycles(Cycle now) const;
 
   private:
-    std::size_t group(int generation) const;
+    int group(int generation) const { return std::min(generation, groups_ - 1); }
+    int used_by(int group) const { return used_by_ ? used_by_[group] : 0; }
     int borrowed() const;
-    std::size_t full_from(std::size_t from) const;
+    int full_from(int from) const;
 
+    static constexpr std::uint32_t none = ~std::uint32_t(0);
+    std::vector<Slot> slots_;                   ///< grows to `capacity`
+    std::unique_ptr<std::uint16_t[]> used_by_;  ///< per group, once a slot has been given out
+    std::uint32_t free_ = none;                 ///< the slot that became free last
     int capacity_;
-    int shared_;  ///< slots beyond one for each group
-    bool nested_;
-    std::vector<std::uint16_t> used_by_;  ///< per group; empty with policy `free`
-    std::vector<Slot> slots_;             ///< grows to `capacity`
-    std::vector<std::uint32_t> free_;
+    int shared_;      ///< slots beyond one for each group
+    int groups_ = 0;  ///< none with policy `free`
     int used_ = 0;
     int peak_ = 0;
+    bool nested_;
 };
 
 }  // namespace raycell

@@ -26,6 +26,7 @@ void Scheduler::schedule(Cycle cycle) {
         return;
     }
     scheduled_ = cycle;
+    if (without_kernel_) return;
     // An earlier notification replaces a later one.
     next_.notify(sc_core::sc_time::from_value(period_.value() * (cycle - now_)));
 }
@@ -38,6 +39,13 @@ Cycle Scheduler::next_busy() const {
         }
     }
     return next;
+}
+
+bool Scheduler::run_next() {
+    without_kernel_ = true;
+    if (scheduled_ == never) return false;
+    tick();
+    return true;
 }
 
 void Scheduler::tick() {

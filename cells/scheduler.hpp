@@ -67,6 +67,10 @@ class Scheduler : public sc_core::sc_module {
 
     std::uint64_t activations() const { return activations_; }
 
+    /// Runs the next cycle, without SystemC's kernel; false if there was none. For measuring what the kernel
+    /// costs: clients must run at once when they are activated.
+    bool run_next();
+
   private:
     static constexpr Cycle slots = 4096;  // power of two, above every usual delay
 
@@ -86,6 +90,7 @@ class Scheduler : public sc_core::sc_module {
     std::uint64_t activations_ = 0;
     bool limit_reached_ = false;
     bool stopped_ = false;
+    bool without_kernel_ = false;
     bool (*watch_)(void*, Cycle) = nullptr;
     void* watch_argument_ = nullptr;
     std::function<void(Cycle)> sampler_;

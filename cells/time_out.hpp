@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "cells/scheduler.hpp"
 
@@ -27,21 +28,25 @@ class TimeOut {
     }
     /// Waits of 2^log cycles and more that came to an end: each would have been an alarm.
     std::uint64_t ended(int log) const {
+        if (!ended_) return 0;
         std::uint64_t sum = 0;
-        for (int i = log; i <= most_log; ++i) sum += ended_[std::size_t(i - least_log)];
+        for (int i = log; i <= most_log; ++i) sum += (*ended_)[std::size_t(i - least_log)];
         return sum;
     }
     /// Since when the cell waits; `never` if it doesn't.
     Cycle since() const { return since_; }
 
   private:
+    using Counts = std::array<std::uint32_t, most_log - least_log + 1>;
     void count(Cycle length) {
         int log = least_log - 1;
         while (log < most_log && length >> (log + 1)) ++log;
-        if (log >= least_log) ++ended_[std::size_t(log - least_log)];
+        if (log < least_log) return;
+        if (!ended_) ended_ = std::make_unique<Counts>(Counts{});
+        ++(*ended_)[std::size_t(log - least_log)];
     }
     Cycle since_ = never;
-    std::array<std::uint32_t, most_log - least_log + 1> ended_{};
+    std::unique_ptr<Counts> ended_;  ///< most cells never wait for long
 };
 
 }  // namespace raycell

@@ -66,7 +66,7 @@ Distribution::Distribution(sc_core::sc_module_name name, Environment& environmen
         links_.push_back(std::make_unique<Link>(environment.scheduler, 1, environment.machine.buffer_depth));
         Link& link = *links_.back();
         link.set_name("distribution.row_" + std::to_string(y - 1) + ".down");
-        environment.stall(link);
+        environment.stall(link, link.name());
         link.connect_source(*rows_[std::size_t(y - 1)]);
         link.connect_sink(*rows_.back());
         rows_[std::size_t(y - 1)]->down.bind(link);

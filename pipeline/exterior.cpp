@@ -16,7 +16,7 @@ void Exterior::join(Array& array) {
             links_.push_back(
                 std::make_unique<Link>(env.scheduler, env.classes.count, env.machine.buffer_depth));
             links_.back()->set_name("border_" + std::to_string(x) + "_" + std::to_string(y) + way);
-            env.stall(*links_.back());
+            env.stall(*links_.back(), links_.back()->name());
             return links_.back().get();
         };
         Link* out = make(".out");
@@ -26,7 +26,7 @@ void Exterior::join(Array& array) {
         out->report_arrivals(*this, std::uint32_t(ports_.size()));
         in->connect_source(*this);
         in->connect_sink(array.cell(x, y));
-        array.join_border(x, y, side, in, out);
+        array.join_border(x, y, side, *in, *out);
         ports_.push_back({x, y, out, in});
     };
     for (int y = 0; y < env.height(); ++y) {

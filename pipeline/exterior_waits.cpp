@@ -34,8 +34,7 @@ void Exterior::add_waits(WaitMap& map) const {
     const Environment& env = environment();
     for (const BorderPort& port : ports_) {
         for (int index = 0; index < port.from_cell->classes(); ++index) {
-            const auto node =
-                map.find(dynamic_cast<const void*>(port.from_cell), Kind::buffer, std::uint32_t(index));
+            const auto node = map.find(port.from_cell, Kind::buffer, std::uint32_t(index));
             if (!node) continue;
             Wants wants{false, false, {}, "an exterior processor"};
             for (std::uint32_t i = 0; i < processors_.size(); ++i) {

@@ -37,7 +37,7 @@ const char* name_of(Verdict verdict) {
 
 Machine::Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
                  const MachineSettings& machine, const ExteriorTracer* tracer,
-                 const SyntheticTraffic* traffic)
+                 const SyntheticTraffic* traffic, const Granularity& granularity)
     : sc_module(name),
       scheduler_("scheduler", sc_core::sc_time(1e3 / machine.clock_mhz, sc_core::SC_NS)),
       picture_(scene.frame.width, scene.frame.height),
@@ -45,7 +45,7 @@ Machine::Machine(sc_core::sc_module_name name, const CellScene& scene, const Pic
       geometry_("geometry", environment_),
       precomputation_("precomputation", environment_),
       distribution_("distribution", environment_),
-      array_("array", environment_),
+      array_("array", environment_, granularity),
       to_precomputation_(scheduler_, 1, stage_link_depth),
       to_distribution_(scheduler_, 1, stage_link_depth) {
     if (machine.max_cycles > 0) scheduler_.set_limit(Cycle(machine.max_cycles));
@@ -63,14 +63,14 @@ Machine::Machine(sc_core::sc_module_name name, const CellScene& scene, const Pic
 
 void Machine::bind_pipeline() {
     to_precomputation_.set_name("geometry.out");
-    environment_.stall(to_precomputation_);
+    environment_.stall(to_precomputation_, to_precomputation_.name());
     to_precomputation_.connect_source(geometry_);
     to_precomputation_.connect_sink(precomputation_);
     geometry_.out.bind(to_precomputation_);
     precomputation_.in.bind(to_precomputation_);
 
     to_distribution_.set_name("precomputation.out");
-    environment_.stall(to_distribution_);
+    environment_.stall(to_distribution_, to_distribution_.name());
     to_distribution_.connect_source(precomputation_);
     to_distribution_.connect_sink(distribution_.row(0));
     precomputation_.out.bind(to_distribution_);
@@ -80,11 +80,10 @@ void Machine::bind_pipeline() {
         row_links_.push_back(std::make_unique<Link>(scheduler_, 1, environment_.machine.buffer_depth));
         Link& link = *row_links_.back();
         link.set_name("distribution.row_" + std::to_string(y) + ".east");
-        environment_.stall(link);
+        environment_.stall(link, link.name());
         link.connect_source(distribution_.row(y));
-        link.connect_sink(array_.cell(0, y));
         distribution_.row(y).east.bind(link);
-        array_.cell(0, y).load_in.bind(link);
+        array_.join_row(y, link);
     }
 }
 
@@ -120,7 +119,7 @@ bool Machine::watch(void* self, Cycle now) {
         env.draining = false;
         if (env.observer) env.observer->draining(false, now);
         machine.drain_start_ = never;
-        for (const auto& cell : machine.array_.cells()) env.scheduler.wake(*cell, now + 1);
+        for (Cell& cell : machine.array_.cells()) env.scheduler.wake(cell, now + 1);
     }
     constexpr std::uint64_t calls_between_reports = 4096;
     if (machine.progress_ && ++machine.watch_calls_ % calls_between_reports == 0) {
@@ -178,22 +177,21 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     activity_.begin(scheduler_.now() + 1, environment_.counters, true);
     // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
     result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
-    for (const auto& link : array_.links()) link->reset_statistics();
+    for (Link& link : array_.links()) link.reset_statistics();
     if (environment_.context.traffic) {
-        for (const auto& cell : array_.cells()) {
-            Cell& c = cell->cell();
-            SyntheticTraffic::furnish(c.store(), environment_.context.scene.frame, c.x(), c.y());
+        for (Cell& cell : array_.cells()) {
+            SyntheticTraffic::furnish(cell.store(), environment_.context.scene.frame, cell.x(), cell.y());
         }
     }
     if (settings.shadows != Shadows::per_hit) {
-        for (const auto& cell : array_.cells()) reset_shadow_bits(cell->cell().store());
+        for (Cell& cell : array_.cells()) reset_shadow_bits(cell.store());
     }
     const auto going = [&] { return result.verdict == Verdict::completed; };
     if (settings.stage == RunStage::load) {
         if (going()) {
-            for (const auto& cell : array_.cells()) {
-                const Cell& c = cell->cell();
-                picture_.at(c.x(), c.y()) = display_cell(environment_.context, c.store(), c.x(), c.y());
+            for (const Cell& cell : array_.cells()) {
+                picture_.at(cell.x(), cell.y()) =
+                    display_cell(environment_.context, cell.store(), cell.x(), cell.y());
             }
         }
     } else {
@@ -254,11 +252,10 @@ void Machine::collect(RunResult& result) const {
     if (exterior_) result.exterior = exterior_->statistics();
     const Context& context = environment_.context;
     const VoxelBits each = voxel_bits(context.settings, context.arithmetic.formats(), context.sources.size());
-    for (const auto& cell : array_.cells()) {
-        const CellStore& store = cell->cell().store();
-        result.storage.add(store, each);
-        result.ray_store_peak = std::max(result.ray_store_peak, cell->cell().ray_store().peak());
-        result.counters.slot_cycles += cell->cell().ray_store().waiting_cycles(scheduler_.now());
+    for (const Cell& cell : array_.cells()) {
+        result.storage.add(cell.store(), each);
+        result.ray_store_peak = std::max(result.ray_store_peak, cell.ray_store().peak());
+        result.counters.slot_cycles += cell.ray_store().waiting_cycles(scheduler_.now());
     }
     if (result.trace_cycles > 0) {
         result.ray_store_mean = double(result.counters.slot_cycles) /
@@ -276,8 +273,8 @@ RunResult::BufferUse Machine::buffer_use(const char* buffer_class, int index, Cy
     use.name = buffer_class;
     double occupied = 0;
     double buffers = 0;
-    for (const auto& link : array_.links()) {
-        const Link::ClassStatistics s = link->statistics(index);
+    for (const Link& link : array_.links()) {
+        const Link::ClassStatistics s = link.statistics(index);
         use.peak = std::max(use.peak, s.peak);
         occupied += double(s.occupied_cycles);
         buffers += s.sent > 0 ? 1 : 0;  // a class that a link never carries has no buffer there

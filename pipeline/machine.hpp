@@ -94,7 +94,7 @@ class Machine : public sc_core::sc_module {
     /// (model/traffic.hpp). All arguments must outlive the machine.
     Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
             const MachineSettings& machine, const ExteriorTracer* tracer,
-            const SyntheticTraffic* traffic = nullptr);
+            const SyntheticTraffic* traffic = nullptr, const Granularity& granularity = {});
 
     /// Runs load, precast and trace to a verdict. Call once.
     RunResult run(std::function<void(const RunProgress&)> progress = {});

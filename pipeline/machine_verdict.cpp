@@ -17,7 +17,7 @@ bool Machine::phase_complete() const {
             return c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed &&
                    c.answers_sent == c.answers_delivered &&
                    std::none_of(array_.cells().begin(), array_.cells().end(),
-                                [](const auto& cell) { return cell->cell().busy(); });
+                                [](const Cell& cell) { return cell.busy(); });
         case Phase::trace:
             return c.pixels_done == cells;
     }
@@ -64,9 +64,9 @@ void Machine::judge(RunResult& result) {
 
 WaitGraph Machine::wait_graph() const {
     WaitMap map;
-    for (const auto& cell : array_.cells()) cell->cell().add_places(map);
+    for (const Cell& cell : array_.cells()) cell.add_places(map);
     if (exterior_) exterior_->add_places(map);
-    for (const auto& cell : array_.cells()) cell->cell().add_waits(map);
+    for (const Cell& cell : array_.cells()) cell.add_waits(map);
     if (exterior_) exterior_->add_waits(map);
     map.graph().analyse();
     return std::move(map.graph());
@@ -90,15 +90,16 @@ std::vector<std::string> Machine::knot_report(const WaitGraph& graph) {
 }
 
 bool Machine::buffers_empty() const {
-    const auto empty = [](const std::vector<std::unique_ptr<Link>>& links) {
-        for (const auto& link : links) {
-            for (int index = 0; index < link->classes(); ++index) {
-                if (link->occupancy(index) > 0) return false;
-            }
+    const auto empty = [](const Link& link) {
+        for (int index = 0; index < link.classes(); ++index) {
+            if (link.occupancy(index) > 0) return false;
         }
         return true;
     };
-    return empty(array_.links()) && (!exterior_ || (empty(exterior_->links()) && !exterior_->busy()));
+    if (!std::all_of(array_.links().begin(), array_.links().end(), empty)) return false;
+    return !exterior_ || (!exterior_->busy() &&
+                          std::all_of(exterior_->links().begin(), exterior_->links().end(),
+                                      [&](const std::unique_ptr<Link>& link) { return empty(*link); }));
 }
 
 /// Nothing moves by itself: if a step of any cell now changes something, its waking was lost, and the verdict
@@ -107,15 +108,15 @@ bool Machine::kick_finds_work() {
     const std::uint64_t before = array_.schedule_hash();
     const Cycle stopped = scheduler_.now();
     scheduler_.set_now(stopped + (Cycle(1) << 40));  // past every transfer, cost and back-off
-    for (const auto& cell : array_.cells()) cell->cell().step(scheduler_.now());
+    for (Cell& cell : array_.cells()) cell.step(scheduler_.now());
     scheduler_.set_now(stopped);
     return array_.schedule_hash() != before;
 }
 
 std::vector<std::string> Machine::stuck_report() const {
     std::vector<std::string> lines;
-    for (const auto& cell : array_.cells()) {
-        auto more = cell->cell().describe_blocked();
+    for (const Cell& cell : array_.cells()) {
+        auto more = cell.describe_blocked();
         lines.insert(lines.end(), more.begin(), more.end());
     }
     const auto add_links = [&lines](const std::vector<std::unique_ptr<Link>>& links) {
@@ -142,8 +143,7 @@ std::vector<std::string> Machine::stuck_report() const {
 
 std::vector<std::pair<int, int>> Machine::blocked_cells(std::size_t most) const {
     std::vector<std::tuple<Cycle, int, int>> found;  // (since, y, x)
-    for (const auto& module : array_.cells()) {
-        const Cell& cell = module->cell();
+    for (const Cell& cell : array_.cells()) {
         // Cells that hold rays but no message come last.
         const Cycle since = cell.busy() ? std::min(cell.oldest_arrival(), never - 1) : cell.oldest_arrival();
         if (since != never) found.emplace_back(since, cell.y(), cell.x());
@@ -168,7 +168,7 @@ void Machine::collect_time_outs(RunResult& result) const {
     }
     const auto seen = [&](WaitGraph::Index i) {
         const WaitGraph::Node& node = result.waits.nodes()[i];
-        return array_.cell(node.x, node.y).cell().time_out().since() != never;
+        return array_.cell(node.x, node.y).time_out().since() != never;
     };
     const auto& knots = result.waits.knots();
     const auto missed = std::count_if(knots.begin(), knots.end(), [&](const auto& knot) {
@@ -181,7 +181,7 @@ void Machine::collect_time_outs(RunResult& result) const {
         sum.missed_knots = std::uint64_t(missed);
         Cycle first = never;
         for (std::size_t i = 0; i < locked.size(); ++i) {
-            const TimeOut& time_out = array_.cells()[i]->cell().time_out();
+            const TimeOut& time_out = array_.cells()[i].time_out();
             (locked[i] ? sum.early_alarms : sum.false_alarms) += time_out.ended(log);
             sum.knot_cells += locked[i] == 2;
             if (!locked[i] || time_out.since() == never) continue;

@@ -93,7 +93,7 @@ class Waveform {
   public:
     Waveform(const std::string& path, CellBench& bench)
         : file_(path),
-          probe_({&bench.module()}, bench.environment(), file_.stream(), {},
+          probe_({&bench.cell()}, bench.environment(), file_.stream(), {},
                  [path](const std::string& text) { std::cerr << path << ": warning: " << text << '\n'; }),
           scheduler_(bench.environment().scheduler) {
         scheduler_.set_sampler([this](Cycle now) { probe_.sample(now); });

@@ -52,6 +52,7 @@ void add_options(OptionTable& table, Options& options) {
     table.number("sources", t.sources, 0, int(max_sources),
                  "shadow rays of each hit; with them the last generation has to wait too");
     add_communication_options(table, options.run.machine);
+    add_granularity_options(table, options.run);
     table.number("seed", t.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1,
                  "of every draw, and of the back-off's jitter");
     table.costs(options.run.machine.costs);
@@ -93,6 +94,7 @@ void summarise(const Json& json, std::uint64_t seed) {
 int run(Options& options, const OptionTable& table) {
     RenderOptions& o = options.run;
     if (!o.prefix.empty()) check_output(o.prefix);
+    check_granularity(o);
     check_memory(o);
     const PictureSettings picture = traffic_picture(o.picture.width, o.picture.height, o.picture.max_depth);
     o.machine.seed = options.traffic.seed;
@@ -103,7 +105,8 @@ int run(Options& options, const OptionTable& table) {
     const double wall_untimed = seconds_since(start);
     const auto built = Clock::now();
     // Never destroyed: SystemC takes ports down in quadratic time.
-    static Machine* const machine = new Machine("machine", scene, picture, o.machine, nullptr, &traffic);
+    static Machine* const machine =
+        new Machine("machine", scene, picture, o.machine, nullptr, &traffic, granularity_of(o));
     const double wall_build = seconds_since(built);
     const bool progress = shows_progress(o);
     const Interruptible interruptible(*machine);

@@ -67,16 +67,16 @@ void CellBench::make_links() {
         // By its name a link draws its random stalls; those of incoming messages are in their cycles already.
         out_[i] = make(environment_.classes.count,
                        border ? "border_" + at + ".out" : "cell_" + at + "." + name_of_side(side));
-        environment_.stall(*out_[i]);
-        out_[i]->connect_source(module_);
+        environment_.stall(*out_[i], out_[i]->name());
+        out_[i]->connect_source(cell());
         in_[i] = make(environment_.classes.count, std::string("in.") + name_of_side(side));
-        in_[i]->connect_sink(module_);
+        in_[i]->connect_sink(cell());
         module_.in[i].bind(*in_[i]);
         module_.out[i].bind(*out_[i]);
     }
     if (setup_.x > 0) return;
     load_ = make(1, "in.load");
-    load_->connect_sink(module_);
+    load_->connect_sink(cell());
     module_.load_in.bind(*load_);
 }
 
@@ -90,8 +90,8 @@ void CellBench::schedule_next() {
     scheduler_.wake(*this, cycle);
     for (std::size_t i = next_; i < stimuli_.size() && stimuli_[i].cycle == cycle; ++i) {
         const GoldenEvent& event = stimuli_[i];
-        if (event.what == GoldenEvent::What::phase) scheduler_.wake(module_, cycle);
-        if (event.what == GoldenEvent::What::drain) scheduler_.wake(module_, cycle + 1);
+        if (event.what == GoldenEvent::What::phase) scheduler_.wake(cell(), cycle);
+        if (event.what == GoldenEvent::What::drain) scheduler_.wake(cell(), cycle + 1);
     }
 }
 

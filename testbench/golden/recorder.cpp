@@ -12,27 +12,26 @@ GoldenRecorder::GoldenRecorder(sc_core::sc_module_name name, Machine& machine, s
       targets_(std::move(targets)),
       configuration_(std::move(configuration)) {}
 
-/// Ports know their links only now.
+/// The ports of modules know their links only now.
 void GoldenRecorder::start_of_simulation() {
     for (std::size_t target = 0; target < targets_.size(); ++target) attach(target);
 }
 
 void GoldenRecorder::attach(std::size_t target) {
-    CellModule& module = *targets_[target].module;
+    const Cell& cell = *targets_[target].cell;
     const Environment& env = machine_.environment();
     CellSetup setup;
-    setup.x = module.cell().x();
-    setup.y = module.cell().y();
+    setup.x = cell.x();
+    setup.y = cell.y();
     for (int side = 0; side < side_count; ++side) {
-        const auto i = std::size_t(side);
-        setup.linked[i] = module.in[i].size() > 0;
-        if (!setup.linked[i]) continue;
-        watch(dynamic_cast<Link&>(*module.in[i][0]), {target, true, side});
-        watch(dynamic_cast<Link&>(*module.out[i][0]), {target, false, side});
+        Link* in = cell.input(Side(side));
+        setup.linked[std::size_t(side)] = in;
+        if (!in) continue;
+        watch(*in, {target, true, side});
+        watch(*cell.output(Side(side)), {target, false, side});
     }
-    if (module.load_in.size() > 0) {
-        watch(dynamic_cast<Link&>(*module.load_in[0]), {target, true, GoldenEvent::load_link});
-    }
+    Link* load = cell.load_input();
+    if (load && load != cell.input(Side::west)) watch(*load, {target, true, GoldenEvent::load_link});
     std::fputs(setup_text(setup, env.context, configuration_).c_str(), targets_[target].file);
 }
 
@@ -75,7 +74,7 @@ void GoldenRecorder::draining(bool on, Cycle now) {
 void GoldenRecorder::finish() {
     const Environment& env = machine_.environment();
     for (std::size_t i = 0; i < targets_.size(); ++i) {
-        const Cell& cell = targets_[i].module->cell();
+        const Cell& cell = *targets_[i].cell;
         const Pixel& pixel = env.picture.at(cell.x(), cell.y());
         if (env.phase == Phase::trace && pixel.cycle != 0) {
             GoldenEvent event{GoldenEvent::What::pixel, env.phase_start + pixel.cycle, 0, 0, 0, {}, 0};

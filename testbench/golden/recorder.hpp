@@ -16,7 +16,7 @@ namespace raycell {
 class GoldenRecorder : public sc_core::sc_module, public LinkObserver, public CellObserver {
   public:
     struct Target {
-        CellModule* module;
+        const Cell* cell;
         std::FILE* file;  ///< stays the caller's
     };
     /// `configuration`: TOML that gives the run's settings again.

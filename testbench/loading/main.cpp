@@ -74,7 +74,7 @@ CellScene scene_of(Options& options) {
 
 std::vector<const CellStore*> stores_of(Machine& machine) {
     std::vector<const CellStore*> stores;
-    for (const auto& cell : machine.array().cells()) stores.push_back(&cell->cell().store());
+    for (const Cell& cell : machine.array().cells()) stores.push_back(&cell.store());
     return stores;
 }
 

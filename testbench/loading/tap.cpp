@@ -24,13 +24,13 @@ MachineTap::MachineTap(Machine& machine, const Layout& layout, LoadListener& lis
         listen(*machine.row_links()[std::size_t(y)], layout.row(y));
         if (y + 1 < layout.height) listen(*machine.distribution().links()[std::size_t(y)], layout.down(y));
     }
-    const Array& array = machine.array();
+    Array& array = machine.array();
     for (std::size_t i = 0; i < array.links().size(); ++i) {
         if (array.side_of(i) != Side::east) continue;
         const std::size_t sink = array.sink_of(i);  // row by row
         const int x = int(sink % std::size_t(layout.width));
         const int y = int(sink / std::size_t(layout.width));
-        listen(*array.links()[i], layout.east(x - 1, y));
+        listen(array.links()[i], layout.east(x - 1, y));
     }
 }
 

@@ -17,13 +17,12 @@ void check_inside(const std::string& option, const std::vector<CellRange>& range
     }
 }
 
-std::vector<CellModule*> cells_in(const std::vector<CellRange>& ranges, Array& array) {
-    std::vector<CellModule*> cells;
-    for (const auto& module : array.cells()) {
-        const Cell& cell = module->cell();
+std::vector<const Cell*> cells_in(const std::vector<CellRange>& ranges, const Array& array) {
+    std::vector<const Cell*> cells;
+    for (const Cell& cell : array.cells()) {
         if (std::any_of(ranges.begin(), ranges.end(),
                         [&](const CellRange& range) { return range.contains(cell.x(), cell.y()); })) {
-            cells.push_back(module.get());
+            cells.push_back(&cell);
         }
     }
     return cells;

@@ -14,6 +14,6 @@ void check_inside(const std::string& option, const std::vector<CellRange>& range
                   const PictureSettings& picture);
 
 /// The cells of all ranges, row by row, each once.
-std::vector<CellModule*> cells_in(const std::vector<CellRange>& ranges, Array& array);
+std::vector<const Cell*> cells_in(const std::vector<CellRange>& ranges, const Array& array);
 
 }  // namespace raycell

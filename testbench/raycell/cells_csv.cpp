@@ -33,7 +33,7 @@ std::vector<Inputs> inputs_of(Machine& machine) {
     const BufferClasses& classes = machine.environment().classes;
     std::vector<Inputs> inputs(array.cells().size());
     for (std::size_t i = 0; i < array.links().size(); ++i) {
-        const Link& link = *array.links()[i];
+        const Link& link = array.links()[i];
         Inputs& cell = inputs[array.sink_of(i)];
         const Side side = array.side_of(i);
         const bool horizontal = side == Side::east || side == Side::west;
@@ -89,7 +89,7 @@ std::string cells_csv(Machine& machine, const RunResult& result) {
     const Cycle cycles = result.precast_cycles + result.trace_cycles;
     const std::vector<Inputs> inputs = inputs_of(machine);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-        const Cell& cell = machine.array().cells()[i]->cell();
+        const Cell& cell = machine.array().cells()[i];
         const Inputs& in = inputs[i];
         const CellStatistics s = cell.statistics(now);
         std::uint64_t stalls = 0;

@@ -26,11 +26,11 @@ void check_golden(const RenderOptions& options) {
 
 GoldenRun::GoldenRun(const RenderOptions& options, const std::string& configuration, Machine& machine) {
     std::vector<GoldenRecorder::Target> targets;
-    for (CellModule* module : cells_in(options.golden, machine.array())) {
-        const std::string suffix = ".golden_" + std::to_string(module->cell().x()) + "_" +
-                                   std::to_string(module->cell().y()) + ".txt";
+    for (const Cell* cell : cells_in(options.golden, machine.array())) {
+        const std::string suffix =
+            ".golden_" + std::to_string(cell->x()) + "_" + std::to_string(cell->y()) + ".txt";
         files_.push_back({suffix, std::make_unique<NewFile>(options.prefix + suffix)});
-        targets.push_back({module, files_.back().file->stream()});
+        targets.push_back({cell, files_.back().file->stream()});
     }
     recorder_ = new GoldenRecorder("golden", machine, targets, configuration);
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "testbench/raycell/cell_ranges.hpp"
 #include "testbench/raycell/commands.hpp"
 
 namespace raycell {
@@ -37,6 +38,26 @@ void check_memory(const RenderOptions& options) {
                          std::to_string(std::llround(there / 1e9)) +
                          " GB are free; expected a smaller array");
     }
+}
+
+void check_granularity(const RenderOptions& options) {
+    if (options.detail.empty()) return;
+    if (options.engine == Engine::untimed)
+        throw UsageError("--detail: the untimed engine has no modules; expected --engine timed");
+    if (options.hosts == Hosts::cell)
+        throw UsageError("--detail: every cell is a module already; expected --granularity auto or tile");
+    check_inside("--detail", options.detail, options.picture);
+}
+
+Granularity granularity_of(const RenderOptions& options) {
+    Granularity granularity;
+    granularity.every_cell = options.hosts == Hosts::cell;
+    granularity.detail = options.detail;
+    if (options.hosts == Hosts::automatic) {
+        for (const auto* more : {&options.probes.cells, &options.golden})
+            granularity.detail.insert(granularity.detail.end(), more->begin(), more->end());
+    }
+    return granularity;
 }
 
 void show_progress(const RunProgress& p) {

@@ -9,6 +9,10 @@ namespace raycell {
 /// A machine that can't be held in memory is refused, with a UsageError, before it is built.
 void check_memory(const RenderOptions& options);
 
+/// Refuses, with a UsageError, what can't be hosted as wished.
+void check_granularity(const RenderOptions& options);
+Granularity granularity_of(const RenderOptions& options);
+
 /// Writes the line of progress to standard error.
 void show_progress(const RunProgress& progress);
 

@@ -254,6 +254,17 @@ void add_communication_options(OptionTable& table, MachineSettings& m) {
     add_link_options(table, m);
 }
 
+void add_granularity_options(OptionTable& table, RenderOptions& options) {
+    table.choice(
+        "granularity", options.hosts,
+        {{"auto", Hosts::automatic}, {"cell", Hosts::cell}, {"tile", Hosts::tile}},
+        "what runs the cells: a SystemC module each, or one for a block of them, which is faster and "
+        "smaller; auto: tiles, but modules for the cells that --detail, --probe or --golden name. No "
+        "result depends on it");
+    table.cells("detail", options.detail,
+                "these cells are modules, with ports, all others in tiles; may come several times");
+}
+
 void add_watch_options(OptionTable& table, RenderOptions& options) {
     table.rays("watch-ray", options.watch_rays,
                "prints the life of the ray with this id and of its children; may come several times");
@@ -297,6 +308,7 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
                  "trace rays, or stop after loading and show the nearest voxels");
     table.choice("engine", options.engine, {{"timed", Engine::timed}, {"untimed", Engine::untimed}},
                  "SystemC cells, or the recursive reference without time");
+    add_granularity_options(table, options);
     table.choice("exterior", p.exterior, {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},
                  "rays that leave the cube: traced on by the exterior processors, or lost");
     add_word_options(table, p.numbers);

@@ -84,6 +84,13 @@ class OptionTable {
     std::vector<Entry> entries_;
 };
 
+/// What runs the cells.
+enum class Hosts {
+    automatic,  ///< modules for the cells that somebody looks at, tiles for the others
+    cell,       ///< a module each
+    tile        ///< tiles, but for --detail
+};
+
 struct RenderOptions {
     std::string scene;
     std::string prefix = "out";
@@ -91,6 +98,8 @@ struct RenderOptions {
     PictureSettings picture;
     MachineSettings machine;
     Engine engine = Engine::timed;
+    Hosts hosts = Hosts::automatic;
+    std::vector<CellRange> detail;  ///< cells that are to be modules
     bool quiet = false;
     bool truth = false;
     bool clip_truth = false;
@@ -112,6 +121,8 @@ void add_word_options(OptionTable& table, NumberSettings& numbers);
 void add_link_options(OptionTable& table, MachineSettings& machine);
 /// Ray store, buffers, networks, recovery, and the links' own.
 void add_communication_options(OptionTable& table, MachineSettings& machine);
+/// What runs the cells.
+void add_granularity_options(OptionTable& table, RenderOptions& options);
 /// render's own, for watching rays.
 void add_watch_options(OptionTable& table, RenderOptions& options);
 /// The rest of render's.

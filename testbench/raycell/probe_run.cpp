@@ -9,11 +9,6 @@
 namespace raycell {
 namespace {
 
-std::vector<const CellModule*> watched(const std::vector<CellRange>& ranges, Machine& machine) {
-    const std::vector<CellModule*> cells = cells_in(ranges, machine.array());
-    return {cells.begin(), cells.end()};
-}
-
 ProbeSettings settings_of(const ProbeOptions& options) {
     return {options.window.from, options.window.to, std::uint64_t(options.limit_mb) * 1000000};
 }
@@ -40,7 +35,7 @@ ProbeRun::ProbeRun(const RenderOptions& options, Machine& machine)
     : machine_(machine),
       name_(file_name(options.prefix)),
       file_(options.prefix + ".vcd"),
-      probe_(watched(options.probes.cells, machine), machine.environment(), file_.stream(),
+      probe_(cells_in(options.probes.cells, machine.array()), machine.environment(), file_.stream(),
              settings_of(options.probes),
              [path = options.prefix + ".vcd", progress = shows_progress(options)](const std::string& text) {
                  if (progress) end_progress();

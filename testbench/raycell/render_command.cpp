@@ -66,7 +66,8 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     const std::uint64_t before = memory_bytes();
     // Never destroyed: SystemC takes ports down in quadratic time (minutes for 256x256 cells), and a process
     // has only one elaboration anyway.
-    static Machine* const kept = new Machine("machine", scene, options.picture, options.machine, tracer);
+    static Machine* const kept = new Machine("machine", scene, options.picture, options.machine, tracer,
+                                             nullptr, granularity_of(options));
     Machine& machine = *kept;
     const std::uint64_t cells = std::uint64_t(options.picture.width) * std::uint64_t(options.picture.height);
     const std::uint64_t after = memory_bytes();
@@ -168,6 +169,7 @@ void summarise(const RenderOptions& options, const Json& json) {
 
 int run(const RenderOptions& options, const OptionTable& table) {
     check_output(options.prefix);
+    check_granularity(options);
     check_memory(options);
     watch_of(options, std::cout);  // refuses what can't be watched before anything is done
     check_probes(options);

@@ -101,10 +101,10 @@ TEST_P(TimedPicture, EqualsTheUntimedOneBitForBit) {
     EXPECT_EQ(c.rays_sent, c.rays_answered + c.rays_silent + c.rays_destroyed);
     EXPECT_EQ(c.answers_sent, c.answers_delivered);
     EXPECT_EQ(c.loads_sent, c.loads_delivered);
-    for (const auto& link : timed.array().links()) {
-        for (int index = 0; index < link->classes(); ++index) {
-            EXPECT_EQ(link->statistics(index).sent, link->statistics(index).delivered);
-            EXPECT_LE(link->statistics(index).peak, drawn.machine.buffer_depth);
+    for (const Link& link : timed.array().links()) {
+        for (int index = 0; index < link.classes(); ++index) {
+            EXPECT_EQ(link.statistics(index).sent, link.statistics(index).delivered);
+            EXPECT_LE(link.statistics(index).peak, drawn.machine.buffer_depth);
         }
     }
     // Without a postponement even the rays and their hops are the same.

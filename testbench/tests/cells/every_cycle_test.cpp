@@ -55,7 +55,7 @@ void run_in_every_cycle(Machine& machine, const LastCycles& last) {
         if (scheduler.next() == never) return;
         const Cycle next = scheduler.next() + 1;
         if (next > last[std::size_t(machine.environment().phase)]) return;
-        for (const auto& cell : machine.array().cells()) scheduler.wake(*cell, next);
+        for (Cell& cell : machine.array().cells()) scheduler.wake(cell, next);
     });
 }
 

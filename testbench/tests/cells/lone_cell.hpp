@@ -22,8 +22,8 @@ struct LoneCell {
                 links->push_back(
                     std::make_unique<Link>(scheduler, environment->classes.count, machine.buffer_depth));
             }
-            in.back()->connect_sink(*cell);
-            out.back()->connect_source(*cell);
+            in.back()->connect_sink(cell->cell());
+            out.back()->connect_source(cell->cell());
             cell->in[std::size_t(side)].bind(*in.back());
             cell->out[std::size_t(side)].bind(*out.back());
         }

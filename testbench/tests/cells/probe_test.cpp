@@ -94,10 +94,10 @@ struct Probed {
         placed = place_own_scene(scene, settings);
         timed =
             std::make_unique<Machine>("machine", placed->scene, settings, machine, placed->exterior.get());
-        std::vector<const CellModule*> modules;
-        for (const auto& [x, y] : cells) modules.push_back(&timed->array().cell(x, y));
+        std::vector<const Cell*> watched;
+        for (const auto& [x, y] : cells) watched.push_back(&timed->array().cell(x, y));
         file = std::tmpfile();
-        probe = std::make_unique<Probe>(modules, timed->environment(), file, window,
+        probe = std::make_unique<Probe>(watched, timed->environment(), file, window,
                                         [this](const std::string& warning) { warnings.push_back(warning); });
         timed->environment().scheduler.set_sampler([this](Cycle now) { probe->sample(now); });
     }
@@ -132,12 +132,12 @@ void expect_buffers_as_recorded(Networks networks, int depth) {
         m.buffer_depth = depth;
     });
     Record record;
-    const Cell& cell = probed.timed->array().cell(12, 10).cell();
+    const Cell& cell = probed.timed->array().cell(12, 10);
     record.cell = &cell;
     std::vector<Link*> into;
     for (std::size_t i = 0; i < probed.timed->array().links().size(); ++i) {
         if (probed.timed->array().sink_of(i) != 10 * 16 + 12) continue;
-        into.push_back(probed.timed->array().links()[i].get());
+        into.push_back(&probed.timed->array().links()[i]);
         into.back()->set_observer(&record);
     }
     probed.timed->environment().observer = &record;

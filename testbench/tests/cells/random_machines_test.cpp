@@ -152,13 +152,13 @@ std::vector<std::uint64_t> standing(Machine& machine) {
     std::vector<std::uint64_t> all{c.rays_sent,    c.rays_answered,     c.rays_silent,   c.rays_destroyed,
                                    c.answers_sent, c.answers_delivered, c.rays.ray_hops, c.rays.return_hops,
                                    c.pixels_done,  c.traversal_cycles,  c.shading_cycles};
-    for (const auto& link : machine.array().links()) {
-        for (int index = 0; index < link->classes(); ++index) {
-            all.push_back(std::uint64_t(link->occupancy(index)));
+    for (const Link& link : machine.array().links()) {
+        for (int index = 0; index < link.classes(); ++index) {
+            all.push_back(std::uint64_t(link.occupancy(index)));
         }
     }
-    for (const auto& cell : machine.array().cells()) {
-        all.push_back(std::uint64_t(cell->cell().ray_store().used()));
+    for (const Cell& cell : machine.array().cells()) {
+        all.push_back(std::uint64_t(cell.ray_store().used()));
     }
     return all;
 }
@@ -170,7 +170,7 @@ void expect_nothing_can_move(Machine& machine) {
     const auto before = standing(machine);
     for (int turn = 1; turn <= 3; ++turn) {
         scheduler.set_now(stopped + (Cycle(1) << 40) + Cycle(turn));
-        for (const auto& cell : machine.array().cells()) cell->cell().step(scheduler.now());
+        for (Cell& cell : machine.array().cells()) cell.step(scheduler.now());
     }
     EXPECT_EQ(standing(machine), before) << "a deadlock in which something can move";
     scheduler.set_now(stopped);

@@ -18,7 +18,7 @@ struct EmptyCell : LoneCell {
     CellStatistics run(Cycle cycles, bool restless, const std::function<void(Cycle)>& script) {
         LoneCell::run(cycles, [&](Cycle now) {
             script(now);
-            if (restless) scheduler.wake(*cell, now + 1);
+            if (restless) scheduler.wake(cell->cell(), now + 1);
         });
         return cell->cell().statistics(scheduler.now());
     }
@@ -138,9 +138,8 @@ TEST(CellWaiting, AWholeRunCountsTheSameWhenItsCellsAreWokenForNothing) {
     std::uint64_t waited = 0;
     for (int y = 0; y < 16; ++y) {
         for (int x = 0; x < 16; ++x) {
-            const CellStatistics a =
-                calm.array().cell(x, y).cell().statistics(calm.environment().scheduler.now());
-            const CellStatistics b = woken.array().cell(x, y).cell().statistics(env.scheduler.now());
+            const CellStatistics a = calm.array().cell(x, y).statistics(calm.environment().scheduler.now());
+            const CellStatistics b = woken.array().cell(x, y).statistics(env.scheduler.now());
             ASSERT_EQ(a.stalls, b.stalls) << x << ", " << y;
             ASSERT_EQ(a.slot_cycles, b.slot_cycles);
             waited += all_cycles(a);
@@ -163,7 +162,7 @@ TEST(RayWatchOrder, EventsOfACycleComeByCellWhateverCellRanFirst) {
         CellObserverList list;
         list.add(watch);
         for (const int i : order) {
-            const Cell& cell = idle.array().cell(i % 4, i / 4).cell();
+            const Cell& cell = idle.array().cell(i % 4, i / 4);
             Ray ray;
             ray.id = std::uint64_t(i) << 32;
             list.launched(cell, 7, ray, nullptr);
@@ -171,7 +170,7 @@ TEST(RayWatchOrder, EventsOfACycleComeByCellWhateverCellRanFirst) {
             list.cell_event(cell, 7, CellEvent::test, ray.id, std::uint32_t(Visit::Event::forward));
         }
         for (const int i : order) {
-            const Cell& cell = idle.array().cell(i % 4, i / 4).cell();
+            const Cell& cell = idle.array().cell(i % 4, i / 4);
             list.cell_event(cell, 9, CellEvent::send, std::uint64_t(i) << 32,
                             std::uint32_t(Side::south) << 8);
             list.stalled(cell, 9, std::uint64_t(i) << 32, Stall::output_full, 2);

@@ -1,0 +1,31 @@
+// A host: one sc_module with one SC_METHOD for a block of cells, for scale.
+#pragma once
+
+#include <systemc>
+#include <vector>
+
+#include "cells/cell.hpp"
+
+namespace raycell {
+
+/// Runs those of its cells that the scheduler's time wheel has woken; the others cost nothing. Its cells call
+/// their links directly, there are no ports.
+class CellTile : public sc_core::sc_module, public CellHost {
+  public:
+    SC_HAS_PROCESS(CellTile);
+    CellTile(sc_core::sc_module_name name, Environment& environment);
+
+    void activate(Cell& cell) override {
+        if (active_.empty()) wake_.notify();
+        active_.push_back(&cell);
+    }
+
+  private:
+    void run();
+
+    Environment& environment_;
+    std::vector<Cell*> active_;  ///< to run in this cycle
+    sc_core::sc_event wake_;
+};
+
+}  // namespace raycell

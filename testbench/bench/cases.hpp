@@ -1,0 +1,18 @@
+// The cases. Those that use SystemC elaborate, so a process runs one of them.
+#pragma once
+
+#include "cells/array.hpp"
+#include "testbench/bench/traffic.hpp"
+
+namespace raycell::bench {
+
+/// sc_fifo channels, an SC_METHOD per cell: what a SystemC user would write first. No time: delta cycles.
+Measured run_sc_fifo(const Traffic& traffic);
+/// The cells of an array as the machine runs them.
+Measured run_array(const Traffic& traffic, const Granularity& granularity);
+/// The same cells, links and time wheel, and a plain loop in place of SystemC's kernel.
+Measured run_bare_cells(const Traffic& traffic);
+/// A plain loop that only moves rays and answers: no cells, no buffers, no time.
+Measured run_bare_tokens(const Traffic& traffic);
+
+}  // namespace raycell::bench
