@@ -160,7 +160,7 @@ double Array::bytes(const Granularity& granularity, int width, int height, const
     for (int side = 0; side < side_count; ++side) {
         each += Link::bytes(used_classes(classes, Side(side))) + sizeof(std::uint32_t);
     }
-    constexpr double module = 10e3;  // measured: ports, process and event of SystemC's
+    constexpr double module = 8.3e3;  // measured: ports, process and event of SystemC's
     return each * width * height + module * double(granularity.modules(width, height));
 }
 

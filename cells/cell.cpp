@@ -47,22 +47,24 @@ Cycle Cell::step(Cycle now) {
         step_load(now);
         return next_;
     }
-    finish_traversal(now);
-    finish_shading(now);
-    move_overdue(now);
+    // Most steps have few of these to do; what there is nothing for is not called.
+    if (traversal_.packet) finish_traversal(now);
+    if (shading_.job != Shading::Job::idle) finish_shading(now);
+    answers_moved_ = 0;
+    if (now >= look_for_overdue_) move_overdue(now);
     // Replies of this cell and answers that pass through take turns when both want to go.
     if (replies_first_) {
-        move_replies(now);
-        move_answers(now);
+        if (has_replies()) move_replies(now);
+        if (pending_ >> answer_bits) move_answers(now);
     } else {
-        move_answers(now);
-        move_replies(now);
+        if (pending_ >> answer_bits) move_answers(now);
+        if (has_replies()) move_replies(now);
     }
-    feed_own(now);
-    feed_children(now);
+    if (!own_ && (root_to_send_ || env_.phase == Phase::precast)) feed_own(now);
+    if (ray_store_.used() > 0) feed_children(now);
     move_rays(now);
-    start_traversal(now);
-    start_shading(now);
+    if (!traversal_.packet) start_traversal(now);
+    if (ray_store_.used() > 0 && shading_.job == Shading::Job::idle) start_shading(now);
     time_out_.step(moved_, blocked_, now);
     return next_;
 }
@@ -82,8 +84,8 @@ void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_
 RayPacket* Cell::packet_at(std::size_t place) const {
     if (place < ray_input_count_) {
         const RayInput& input = ray_inputs_[place];
-        const Message message = link_of(place).front(input.index);
-        return message.kind == Message::Kind::ray ? message.ray : nullptr;
+        const Message* message = link_of(place).head(input.index);
+        return message && message->kind == Message::Kind::ray ? message->ray : nullptr;
     }
     if (place == ray_input_count_) return own_;
     return ray_store_[std::uint32_t(place - ray_input_count_ - 1)].child;
@@ -115,7 +117,6 @@ std::uint32_t Cell::unit_cycles(std::uint32_t cycles) {
 }
 
 void Cell::finish_traversal(Cycle now) {
-    if (!traversal_.packet) return;
     if (now < traversal_.done) {
         want(traversal_.done);
         return;
@@ -125,30 +126,47 @@ void Cell::finish_traversal(Cycle now) {
     traversal_.packet = nullptr;
 }
 
+/// The next untested ray, round robin over the places.
 void Cell::start_traversal(Cycle now) {
-    if (traversal_.packet) return;
-    const std::size_t places = place_count();
-    for (std::size_t i = 0; i < places; ++i) {
-        const std::size_t place = (next_test_ + i) % places;
-        if (nothing_at(place)) continue;
-        RayPacket* packet = packet_at(place);
-        if (!packet || packet->stage != RayPacket::Stage::untested) continue;
-        settle(wait_of(*packet, place), packet->ray.id, now);
-        packet->wait.cause = Stall::none;
-        packet->visit = visit_cell(store_, packet->ray, env_.context);
-        packet->stage = RayPacket::Stage::in_test;
-        const std::uint32_t cycles =
-            unit_cycles(packet->ray.outside ? env_.costs().walk_step
-                                            : visit_cycles(packet->visit, env_.settings, env_.costs()));
-        env_.counters.traversal_cycles += cycles;
-        statistics_.traversal_cycles += cycles;
-        traversal_ = {packet, now + cycles};
-        next_test_ = place + 1;
-        record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
-               std::uint32_t(packet->visit.event));
-        want(traversal_.done);
-        return;
+    const std::size_t slots = slot_places();
+    std::uint32_t inputs = occupied();
+    if (inputs == 0 && slots == 0) return;
+    // Places of slots come last, so the round is: inputs from next_test_ on, slots, inputs before it.
+    const std::size_t first_slot = ray_input_count_ + std::size_t(1);
+    const std::size_t start = next_test_ < place_count() ? next_test_ : 0;
+    const std::uint32_t before = start < first_slot ? inputs & ((1U << start) - 1) : inputs;
+    for (inputs &= ~before; inputs; inputs &= inputs - 1) {
+        if (test_at(std::size_t(__builtin_ctz(inputs)), now)) return;
     }
+    for (std::size_t i = std::max(start, first_slot); i < first_slot + slots; ++i) {
+        if (test_at(i, now)) return;
+    }
+    for (inputs = before; inputs; inputs &= inputs - 1) {
+        if (test_at(std::size_t(__builtin_ctz(inputs)), now)) return;
+    }
+    for (std::size_t i = first_slot; i < std::min(start, first_slot + slots); ++i) {
+        if (test_at(i, now)) return;
+    }
+}
+
+bool Cell::test_at(std::size_t place, Cycle now) {
+    RayPacket* packet = packet_at(place);
+    if (!packet || packet->stage != RayPacket::Stage::untested) return false;
+    settle(wait_of(*packet, place), packet->ray.id, now);
+    packet->wait.cause = Stall::none;
+    packet->visit = visit_cell(store_, packet->ray, env_.context);
+    packet->stage = RayPacket::Stage::in_test;
+    const std::uint32_t cycles =
+        unit_cycles(packet->ray.outside ? env_.costs().walk_step
+                                        : visit_cycles(packet->visit, env_.settings, env_.costs()));
+    env_.counters.traversal_cycles += cycles;
+    statistics_.traversal_cycles += cycles;
+    traversal_ = {packet, now + cycles};
+    next_test_ = std::uint32_t(place + 1);
+    record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
+           std::uint32_t(packet->visit.event));
+    want(traversal_.done);
+    return true;
 }
 
 // ---- routing
@@ -184,21 +202,20 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
     Answer* copy = env_.pools.answers.take();
     *copy = answer;
     const bool intensity = answer.kind == Answer::Kind::intensity;
-    out->send(env_.classes.answer, Message(copy),
-              env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
+    out->send(env_.classes.answer, Message(copy), intensity ? env_.cycles.intensity : env_.cycles.verdict);
     record_send(now, route(answer), env_.classes.answer, answer.id);
     return true;
 }
 
 void Cell::move_answers(Cycle now) {
     const int index = env_.classes.answer;
-    std::array<int, side_count> order{};  // sides with an answer, oldest first
+    std::array<int, side_count> order;  // sides with an answer, oldest first
     int count = 0;
-    for (int side = 0; side < side_count; ++side) {
-        if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
-        if (answers_moved_ >> unsigned(side) & 1) continue;
+    for (std::uint32_t sides = pending_ >> answer_bits & ~answers_moved_; sides; sides &= sides - 1) {
+        const int side = __builtin_ctz(sides);
         Link* in = in_[std::size_t(side)];
-        if (in->front(index).kind != Message::Kind::answer) continue;
+        const Message* head = in->head(index);
+        if (!head || head->kind != Message::Kind::answer) continue;
         int place = count++;
         for (; place > 0; --place) {
             const int before = order[std::size_t(place - 1)];
@@ -215,7 +232,7 @@ void Cell::move_answers(Cycle now) {
 
 void Cell::move_answer(Link& in, Wait& wait, Cycle now) {
     const int index = env_.classes.answer;
-    const Message message = in.front(index);
+    const Message message = *in.head(index);
     const Cycle ready = in.arrival(index) + env_.costs().route_return;
     if (now < ready) {
         want(ready);
@@ -244,7 +261,7 @@ void Cell::move_answer(Link& in, Wait& wait, Cycle now) {
         ++statistics_.return_hops;
         if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
         const bool intensity = answer->kind == Answer::Kind::intensity;
-        out->send(index, message, env_.cycles_for(intensity ? env_.bits.intensity : env_.bits.verdict));
+        out->send(index, message, intensity ? env_.cycles.intensity : env_.cycles.verdict);
         record_send(now, way, index, answer->id);
     }
     answer_moved_ = true;
@@ -257,21 +274,33 @@ void Cell::move_answer(Link& in, Wait& wait, Cycle now) {
 void Cell::move_rays(Cycle now) {
     // Oldest first: a round robin over places, or one per output, lets a ray wait for ever for an output that
     // others keep using (found as a livelock in spite of reserved slots).
-    std::vector<WaitingRay>& waiting = env_.waiting;
+    std::vector<WaitingRay>& waiting = env_.waiting;  // of the second and later ones: mostly there is one
     waiting.clear();
-    const std::size_t places = place_count();
-    for (std::size_t place = 0; place < places; ++place) {
-        if (nothing_at(place)) continue;
+    WaitingRay first{0, 0, nullptr};
+    const auto look = [&](std::size_t place) {
         RayPacket* packet = packet_at(place);
-        if (!packet || packet->stage != RayPacket::Stage::decided) continue;
-        waiting.push_back({packet->decided, place, packet});
+        if (!packet || packet->stage != RayPacket::Stage::decided) return;
+        if (first.packet) {
+            waiting.push_back({packet->decided, place, packet});
+        } else {
+            first = {packet->decided, place, packet};
+        }
+    };
+    for (std::uint32_t inputs = occupied(); inputs; inputs &= inputs - 1) {
+        look(std::size_t(__builtin_ctz(inputs)));
     }
+    const std::size_t slots = slot_places();
+    for (std::size_t slot = 0; slot < slots; ++slot) look(ray_input_count_ + 1 + slot);
+    if (!first.packet) return;
+    if (waiting.empty()) {
+        try_ray(*first.packet, first.place, now);
+        return;
+    }
+    waiting.push_back(first);
     std::sort(waiting.begin(), waiting.end(), [](const WaitingRay& a, const WaitingRay& b) {
         return a.since != b.since ? a.since < b.since : a.place < b.place;
     });
-    for (const WaitingRay& ray : waiting) {
-        try_ray(*ray.packet, ray.place, now);
-    }
+    for (const WaitingRay& ray : waiting) try_ray(*ray.packet, ray.place, now);
 }
 
 /// Moves a ray if it can; what it waited for is told apart by cause.
@@ -342,7 +371,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
         return false;
     }
     remove_from(place);
-    const int bits = is_shadow(ray.kind) ? env_.bits.shadow_ray : env_.bits.ray;
+    const int cycles = is_shadow(ray.kind) ? env_.cycles.shadow_ray : env_.cycles.ray;
     if (leaves) {
         ++env_.counters.rays.exterior;
         ++env_.counters.rays.return_hops;  // the border link, counted with its way back
@@ -355,7 +384,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     }
     if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(ray.id >> 32)].hops;
     ++packet.hops;
-    out->send(index, Message(&packet), env_.cycles_for(bits));
+    out->send(index, Message(&packet), cycles);
     record_send(now, side, index, ray.id);
     return true;
 }

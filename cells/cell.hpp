@@ -133,6 +133,7 @@ class Cell final : public Client {
     RayPacket* next_child(Slot& slot, std::uint32_t index, Cycle now);
     bool complete(const Slot& slot) const;
     bool slot_complete() const;
+    bool has_replies() const { return ray_store_.used() > 0 || shading_.job == Shading::Job::direct_answer; }
     void finish_shading(Cycle now);
     void start_shading(Cycle now);
     void begin_shade(std::uint32_t index, Cycle now);
@@ -186,51 +187,61 @@ class Cell final : public Client {
         if (env_.observer) env_.observer->cell_event(*this, now, event, ray, detail);
     }
 
+    /// Places of slots that hold a child; there are none without slots in use.
+    std::size_t slot_places() const { return ray_store_.used() > 0 ? ray_store_.touched() : 0; }
+    /// Bit per place that may hold a ray: inputs and the own ray.
+    std::uint32_t occupied() const {
+        const std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1);
+        return inputs | std::uint32_t(own_ != nullptr) << ray_input_count_;
+    }
+    bool test_at(std::size_t place, Cycle now);
+
+    // What every step looks at comes first; what few cells or reports need, last.
     Environment& env_;
+    CellHost* host_ = nullptr;
+    Cycle next_ = never;
     int x_;
     int y_;
-    CellHost* host_ = nullptr;
-    std::array<Link*, side_count> in_{};
-    std::array<Link*, side_count> out_{};
-    Link* load_in_ = nullptr;
-    std::array<RayInput, most_ray_inputs> ray_inputs_{};
-    std::size_t ray_input_count_ = 0;
     /// Bit per buffer that holds anything: ray inputs from 0, answers by side from `answer_bits`.
     std::uint32_t pending_ = 0;
     static constexpr unsigned answer_bits = 16;
-    CellStore store_;
-    RayStore ray_store_;
+    std::uint32_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
     Traversal traversal_;
-    Shading shading_;
-    std::size_t next_test_ = 0;   ///< round robin over places
+    RayPacket* own_ = nullptr;  ///< primary or precast ray on its way out
+    Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
+    std::uint8_t ray_input_count_ = 0;
+    std::uint8_t own_attempts_ = 0;
     bool replies_first_ = false;  ///< replies go before answers that came in, which went last
     bool answer_moved_ = false;   ///< this cycle: an answer left an input
-    Cycle store_port_ = never;    ///< cycle in which the ray store's one write port was used
-    Cycle load_done_ = 0;
-    LoadItem* load_item_ = nullptr;
-    RayPacket* own_ = nullptr;  ///< primary or precast ray on its way out
-    Cycle own_at_ = 0;
-    std::uint8_t own_attempts_ = 0;
-    bool root_waits_ = false;  ///< the pixel's intensity is still to come
+    bool moved_ = false;          ///< this cycle: something went on, or came home
+    bool blocked_ = false;        ///< this cycle: something wanted to and could not
+    bool root_waits_ = false;     ///< the pixel's intensity is still to come
     bool root_to_send_ = false;
+    std::uint32_t next_test_ = 0;  ///< round robin over places
+    Stall cause_ = Stall::none;    ///< why the last attempt to move something failed
+    std::array<RayInput, most_ray_inputs> ray_inputs_{};
+    std::array<Link*, side_count> in_{};
+    std::array<Link*, side_count> out_{};
     /// Cycles that a message which waits to move is passed over by others; after that it goes before all of
     /// them, oldest first. Without it a stream of notices can starve what would end it (deadlock.md, step 5).
     static constexpr Cycle patience = 65536;
     static constexpr Cycle epoch = patience / 8;  ///< ages are counted in these
     Cycle look_for_overdue_ = patience;           ///< cycle from which on to look for such messages
-    std::uint32_t answers_moved_ = 0;   ///< bit per side whose buffer of answers was read in this cycle
-    std::uint64_t precast_next_ = 0;    ///< voxel · sources + source
-    std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
     std::uint64_t hash_ = 0;
+    TimeOut time_out_;
+    RayStore ray_store_;
+    Shading shading_;
+    CellStore store_;
     CellStatistics statistics_;
-    Stall cause_ = Stall::none;                    ///< why the last attempt to move something failed
     std::array<Wait, side_count> answer_waits_{};  ///< of the oldest answer at each side
     Wait direct_wait_;                             ///< of the answer that stands in the shading unit
-    Cycle next_ = never;
-    std::uint64_t operations_ = 0;  ///< of the units, for their random stalls
-    bool moved_ = false;            ///< this cycle: something went on, or came home
-    bool blocked_ = false;          ///< this cycle: something wanted to and could not
-    TimeOut time_out_;
+    Cycle own_at_ = 0;
+    std::uint64_t operations_ = 0;      ///< of the units, for their random stalls
+    std::uint64_t precast_next_ = 0;    ///< voxel · sources + source
+    std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
+    Link* load_in_ = nullptr;
+    LoadItem* load_item_ = nullptr;
+    Cycle load_done_ = 0;
 };
 
 /// Adds the buffer of a class at the end of a link, if it holds anything.

@@ -10,8 +10,6 @@ namespace raycell {
 /// the usual order follows for the others. Looks for it once an epoch, and in every step while there is any:
 /// so it does not matter how often the cell runs.
 void Cell::move_overdue(Cycle now) {
-    answers_moved_ = 0;
-    if (now < look_for_overdue_) return;
     const Cycle began = now / epoch * epoch;
     enum Kind { answer, reply, ray };
     std::vector<std::tuple<Cycle, Kind, std::size_t>> overdue;

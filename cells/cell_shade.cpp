@@ -103,7 +103,7 @@ void Cell::deliver_to_slot(const Answer& answer, Cycle now) {
 // -----------------------------------------------------------------------------------
 
 void Cell::feed_own(Cycle now) {
-    if (own_ || env_.draining) return;
+    if (env_.draining) return;
     if (env_.phase == Phase::precast) {
         const std::uint64_t sources = env_.context.scene.sources.size();
         if (precast_next_ >= store_.voxels.size() * sources) return;
@@ -195,7 +195,6 @@ bool Cell::slot_complete() const {
 }
 
 void Cell::start_shading(Cycle now) {
-    if (shading_.job != Shading::Job::idle) return;
     // Finish before you begin: a shaded slot is a slot free again. Oldest first among equals.
     constexpr std::uint32_t none = ~std::uint32_t(0);
     std::uint32_t shade = none;
@@ -269,7 +268,7 @@ void Cell::begin_direct(RayPacket& packet, Cycle now) {
 }
 
 void Cell::finish_shading(Cycle now) {
-    if (shading_.job == Shading::Job::idle || shading_.job == Shading::Job::direct_answer) return;
+    if (shading_.job == Shading::Job::direct_answer) return;
     if (now < shading_.done) {
         want(shading_.done);
         return;

@@ -43,11 +43,20 @@ struct WaitingRay {
     RayPacket* packet;
 };
 
+/// Cycles on a link of the messages that rays and answers are.
+struct LinkCycles {
+    int ray;
+    int shadow_ray;
+    int intensity;
+    int verdict;
+};
+
 struct Environment {
     const PictureSettings settings;
     const MachineSettings machine;
     Context context;
     MessageBits bits;
+    LinkCycles cycles;  ///< for `bits`: no division in every hop
     BufferClasses classes;
     Scheduler& scheduler;
     Picture& picture;
@@ -68,6 +77,8 @@ struct Environment {
           machine(machine_settings),
           context(scene, settings, traffic),
           bits(message_bits(settings, machine, context.arithmetic.formats())),
+          cycles{cycles_for(bits.ray), cycles_for(bits.shadow_ray), cycles_for(bits.intensity),
+                 cycles_for(bits.verdict)},
           classes(buffer_classes(machine.networks)),
           scheduler(s),
           picture(p) {}

@@ -45,23 +45,19 @@ void Link::set_observer(LinkObserver* observer) { extras().observer = observer; 
 
 void Link::set_name(std::string name) { extras().name = std::move(name); }
 
-bool Link::can_send(int index, Cycle& retry) {
-    Buffer& b = buffer(index);
-    const Cycle now = scheduler_.now();
-    const std::uint32_t still_seen = b.still_seen(now);
-    if (b.count + still_seen >= depth_) {
-        if (still_seen > 0) {
-            retry = std::min(retry, now + 1);
-        } else {
-            b.sender_waits = true;
-        }
-        return false;
-    }
-    if (wires_free_ > now) {
-        retry = std::min(retry, wires_free_);
-        return false;
-    }
-    return true;
+std::uint32_t Link::stalled() {
+    if (!(extras_->stall > 0)) return 0;
+    return stall_cycles(extras_->stall, extras_->stall_seed, extras_->stall_who, extras_->sends++);
+}
+
+void Link::tell_sent(int index, const Message& message, int cycles) {
+    if (extras_->observer) extras_->observer->sent(*this, index, message, cycles, scheduler_.now());
+    if (extras_->arrivals) extras_->arrivals->arrives(extras_->port, index, wires_free_);
+}
+
+void Link::tell_popped(int index) {
+    if (!extras_->observer) return;
+    extras_->observer->popped(*this, index, buffer(index).at(0).message, scheduler_.now());
 }
 
 Link::Room Link::room(int index) const {
@@ -79,30 +75,6 @@ void Link::Buffer::grow(int depth) {
     ring = std::move(entries);
     head = 0;
     capacity = larger;
-}
-
-void Link::send(int index, const Message& message, int cycles) {
-    Buffer& b = buffer(index);
-    const Cycle now = scheduler_.now();
-    if (b.count == b.capacity) b.grow(depth_);
-    if (extras_ && extras_->stall > 0) {
-        cycles +=
-            int(stall_cycles(extras_->stall, extras_->stall_seed, extras_->stall_who, extras_->sends++));
-    }
-    wires_free_ = now + Cycle(cycles);
-    b.at(b.count) = {message, wires_free_};
-    ++b.count;
-    if (pending_) *pending_ |= b.pending_bits;
-    ++b.sent;
-    b.occupied -= now;
-    // A place read in this cycle still counts: the peak must not depend on which end ran first.
-    b.peak = std::max(b.peak, std::uint16_t(b.count + b.still_seen(now)));
-    busy_cycles_ += std::uint64_t(cycles);
-    if (extras_) {
-        if (extras_->observer) extras_->observer->sent(*this, index, message, cycles, now);
-        if (extras_->arrivals) extras_->arrivals->arrives(extras_->port, index, wires_free_);
-    }
-    if (sink_) scheduler_.wake(*sink_, wires_free_);
 }
 
 void Link::watch(int index, std::uint32_t* pending, std::uint32_t bits) {
@@ -145,25 +117,6 @@ Cycle Link::head_since(int index) const {
 Cycle Link::last_pop(int index) const {
     const Buffer* b = find(index);
     return b ? b->last_pop : never;
-}
-
-void Link::pop(int index) {
-    Buffer& b = buffer(index);
-    const Cycle now = scheduler_.now();
-    if (extras_ && extras_->observer) extras_->observer->popped(*this, index, b.at(0).message, now);
-    b.occupied += now;
-    b.head = std::uint16_t(b.wrapped(1));
-    --b.count;
-    if (b.count == 0 && pending_) *pending_ &= ~b.pending_bits;
-    if (b.last_pop != now) {
-        b.last_pop = now;
-        b.popped_now = 0;
-    }
-    ++b.popped_now;
-    if (b.sender_waits) {
-        b.sender_waits = false;
-        if (source_) scheduler_.wake(*source_, now + 1);
-    }
 }
 
 }  // namespace raycell

@@ -2,6 +2,7 @@
 // (paper, section 4.3: "buffers shared by neighbouring cells").
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -81,6 +82,13 @@ class Link final : public LinkOut, public LinkIn {
         if (!buffer || buffer->count == 0) return {};
         const Entry& entry = buffer->at(0);
         return entry.visible <= scheduler_.now() ? entry.message : Message();
+    }
+    /// The same of a class that the link carries, without a copy: null if nothing has arrived.
+    const Message* head(int index) const {
+        const Buffer& b = buffer(index);
+        if (b.count == 0) return nullptr;
+        const Entry& entry = b.at(0);
+        return entry.visible <= scheduler_.now() ? &entry.message : nullptr;
     }
     Cycle arrival(int index) const override {
         const Buffer* buffer = find(index);
@@ -163,6 +171,9 @@ class Link final : public LinkOut, public LinkIn {
     Buffer& buffer(int index) { return buffers_[places_[std::size_t(index)]]; }
     const Buffer& buffer(int index) const { return buffers_[places_[std::size_t(index)]]; }
     Extras& extras();
+    std::uint32_t stalled();
+    void tell_sent(int index, const Message& message, int cycles);
+    void tell_popped(int index);
 
     Scheduler& scheduler_;
     std::unique_ptr<Buffer[]> buffers_;
@@ -176,5 +187,63 @@ class Link final : public LinkOut, public LinkIn {
     std::uint8_t classes_;
     std::array<std::uint8_t, most_classes> places_;  ///< of the classes' buffers
 };
+
+// What a cell does with its links in every hop.
+
+inline bool Link::can_send(int index, Cycle& retry) {
+    Buffer& b = buffer(index);
+    const Cycle now = scheduler_.now();
+    const std::uint32_t still_seen = b.still_seen(now);
+    if (b.count + still_seen >= depth_) {
+        if (still_seen > 0) {
+            retry = std::min(retry, now + 1);
+        } else {
+            b.sender_waits = true;
+        }
+        return false;
+    }
+    if (wires_free_ > now) {
+        retry = std::min(retry, wires_free_);
+        return false;
+    }
+    return true;
+}
+
+inline void Link::send(int index, const Message& message, int cycles) {
+    Buffer& b = buffer(index);
+    const Cycle now = scheduler_.now();
+    if (b.count == b.capacity) b.grow(depth_);
+    if (extras_) cycles += int(stalled());
+    wires_free_ = now + Cycle(cycles);
+    b.at(b.count) = {message, wires_free_};
+    ++b.count;
+    if (pending_) *pending_ |= b.pending_bits;
+    ++b.sent;
+    b.occupied -= now;
+    // A place read in this cycle still counts: the peak must not depend on which end ran first.
+    b.peak = std::max(b.peak, std::uint16_t(b.count + b.still_seen(now)));
+    busy_cycles_ += std::uint64_t(cycles);
+    if (extras_) tell_sent(index, message, cycles);
+    if (sink_) scheduler_.wake(*sink_, wires_free_);
+}
+
+inline void Link::pop(int index) {
+    Buffer& b = buffer(index);
+    const Cycle now = scheduler_.now();
+    if (extras_) tell_popped(index);
+    b.occupied += now;
+    b.head = std::uint16_t(b.wrapped(1));
+    --b.count;
+    if (b.count == 0 && pending_) *pending_ &= ~b.pending_bits;
+    if (b.last_pop != now) {
+        b.last_pop = now;
+        b.popped_now = 0;
+    }
+    ++b.popped_now;
+    if (b.sender_waits) {
+        b.sender_waits = false;
+        if (source_) scheduler_.wake(*source_, now + 1);
+    }
+}
 
 }  // namespace raycell

@@ -9,18 +9,8 @@ Scheduler::Scheduler(sc_core::sc_module_name name, sc_core::sc_time period)
     dont_initialize();
 }
 
-void Scheduler::wake(Client& client, Cycle cycle) {
-    if (cycle - now_ < slots) {
-        wheel_[cycle % slots].push_back(&client);
-        ++waiting_;
-    } else {
-        far_[cycle].push_back(&client);
-    }
-    schedule(cycle);
-}
-
 void Scheduler::schedule(Cycle cycle) {
-    if (stopped_ || cycle >= scheduled_) return;
+    if (stopped_) return;
     if (cycle > limit_) {
         limit_reached_ = true;
         return;
@@ -71,7 +61,7 @@ void Scheduler::tick() {
         client->activate();
     }
     const Cycle next = next_busy();
-    if (next != never) schedule(next);
+    if (next < scheduled_) schedule(next);
 }
 
 }  // namespace raycell

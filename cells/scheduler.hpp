@@ -24,6 +24,7 @@ class Client {
   private:
     friend class Scheduler;
     Cycle woken_ = never;
+    Cycle due_ = never;  ///< last cycle for which it was noted
 };
 
 /// One SC_METHOD that runs in each cycle in which somebody is to be woken.
@@ -36,7 +37,17 @@ class Scheduler : public sc_core::sc_module {
     sc_core::sc_time period() const { return period_; }
 
     /// Activates `client` in `cycle`, which must lie after now() (or be now() before anything has run).
-    void wake(Client& client, Cycle cycle);
+    void wake(Client& client, Cycle cycle) {
+        if (client.due_ == cycle) return;  // noted already: entries of cycles to come stay
+        client.due_ = cycle;
+        if (cycle - now_ < slots) {
+            wheel_[cycle % slots].push_back(&client);
+            ++waiting_;
+        } else {
+            far_[cycle].push_back(&client);
+        }
+        if (cycle < scheduled_) schedule(cycle);
+    }
 
     /// No cycle after this one is run; limit_reached() tells that there would have been one.
     void set_limit(Cycle limit) { limit_ = limit; }

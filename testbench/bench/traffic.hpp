@@ -40,7 +40,8 @@ bool goes_on(const Environment& environment, const Visit& visit, int x, int y);
 /// Where an answer goes on to; call only away from its home.
 Side way_home(const Answer& answer, int x, int y);
 
-/// Now, in seconds, and the process's resident bytes.
+/// Processor time so far, in seconds: one thread, so the wall time on an idle machine, and nearly the same on
+/// a busy one. The process's resident bytes.
 double clock_seconds();
 double resident_bytes();
 

@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-#include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iostream>
 
@@ -24,19 +24,38 @@ double available_bytes() {
     return double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
 }
 
+/// What grows with the array before anything is loaded: cells with their links, and the picture, which the
+/// result has once more.
+double needed_bytes(const RenderOptions& options) {
+    constexpr double untimed_cell = 200;
+    const double cells = double(options.picture.width) * options.picture.height;
+    if (options.engine == Engine::untimed) return cells * (untimed_cell + sizeof(Pixel));
+    return cells * 2 * sizeof(Pixel) + Array::bytes(granularity_of(options), options.picture.width,
+                                                    options.picture.height,
+                                                    buffer_classes(options.machine.networks));
+}
+
+std::string gigabytes(double bytes) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*f GB", bytes < 10e9 ? 1 : 0, bytes / 1e9);
+    return text;
+}
+
 }  // namespace
 
 void check_memory(const RenderOptions& options) {
-    constexpr double bytes_per_cell_module = 10e3;
-    constexpr double bytes_per_untimed_cell = 200;
-    const double each = options.engine == Engine::timed ? bytes_per_cell_module : bytes_per_untimed_cell;
-    const double needed = each * options.picture.width * options.picture.height;
+    constexpr double worth_telling = 1e9;
+    const double needed = needed_bytes(options);
     const double there = available_bytes();
     if (needed > there) {
-        throw UsageError("--cells: " + std::to_string(std::llround(needed / 1e9)) +
-                         " GB would be needed for so many cells, " +
-                         std::to_string(std::llround(there / 1e9)) +
-                         " GB are free; expected a smaller array");
+        const bool modules = options.engine == Engine::timed && options.hosts == Hosts::cell;
+        throw UsageError("--cells: " + gigabytes(needed) + " would be needed for so many cells, " +
+                         gigabytes(there) + " are free; expected a smaller array" +
+                         (modules ? ", or --granularity tile" : ""));
+    }
+    if (needed > worth_telling && !options.quiet) {
+        std::cerr << "about " << gigabytes(needed) << " of memory before anything is loaded, "
+                  << gigabytes(there) << " are free\n";
     }
 }
 

@@ -1,4 +1,6 @@
 // raycell render and deadlock_tb --granularity, --detail: files that do not depend on who runs the cells.
+#include <unistd.h>
+
 #include "program.hpp"
 
 namespace raycell::system_test {
@@ -82,6 +84,18 @@ TEST(Granularity, OfTilesTakesAFractionOfTheMemoryOfModules) {
     EXPECT_LT(tile, 2048);
     EXPECT_GT(bytes({"--granularity", "cell"}), 3 * tile);
     EXPECT_LT(bytes({"--detail", "0..9,0..9"}), 1.2 * tile);
+}
+
+TEST(Granularity, OfModulesIsRefusedWhereTheirMemoryIsNotThere) {
+    constexpr double needed = 16e6 * 8e3;
+    if (double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) > needed)
+        GTEST_SKIP() << "there is memory for 4096x4096 modules here";
+    const Workshop workshop;
+    const Finished finished =
+        workshop.render(own_scene("cornell.nff"), {"--cells", "4096x4096", "--granularity", "cell"});
+    EXPECT_EQ(finished.exit_code, 1);
+    EXPECT_TRUE(contains(finished.err, "or --granularity tile")) << finished.err;
+    EXPECT_LT(finished.megabytes, 100);
 }
 
 TEST(Granularity, IsRefusedInContradictionsAndOutsideTheArray) {
