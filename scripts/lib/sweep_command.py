@@ -47,6 +47,7 @@ class Command:
         """The first word is the project's folder, the others are the user's. `called`: the script they called, if it is
         not the sweep's own."""
         self.called = called or f"scripts/{self.script}"
+        self.short = self.called.removeprefix("scripts/")
         parser = self.parser()
         self.root, self.options = pathlib.Path(words[0]), parser.parse_args(words[1:])
         quick = self.options.quick
@@ -96,10 +97,10 @@ class Command:
     # What they share.
 
     def say(self, text):
-        print(f"{self.script}: {text}", file=sys.stderr)
+        print(f"{self.short}: {text}", file=sys.stderr)
 
     def fail(self, text):
-        sys.exit(f"{self.script}: {text}")
+        sys.exit(f"{self.short}: {text}")
 
     def chosen(self, runs):
         """Those that --only names."""
@@ -181,5 +182,5 @@ class Command:
         try:
             return self.sweep()
         except (KeyboardInterrupt, Stopped):
-            print(f"\n{self.script}: stopped; what was finished is kept, the same command goes on", file=sys.stderr)
+            print(f"\n{self.short}: stopped; what was finished is kept, the same command goes on", file=sys.stderr)
             return 130
