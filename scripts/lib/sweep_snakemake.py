@@ -170,6 +170,8 @@ def main(root, sweep="", *words):
     own, options = words, []
     if "--" in words:
         own, options = words[:words.index("--")], words[words.index("--") + 1:]
+    if not os.access(SNAKEMAKE, os.X_OK):
+        sys.exit("sweep: snakemake is missing; as root, run: apt-get install snakemake")
     own = [root, *own]
     command = SWEEPS[sweep](own, f"scripts/sweep {sweep}")
     if command.options.from_csv:
