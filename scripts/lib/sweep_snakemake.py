@@ -164,6 +164,10 @@ class SnakemakeSweep:
 
 
 def main(root, sweep="", *words):
+    if sweep in ("-h", "--help"):
+        print(f"usage: scripts/sweep {'|'.join(SWEEPS)} [OPTION ...] [-- SNAKEMAKE_OPTION ...]\n"
+              "scripts/sweep SWEEP --help lists the options; docs/sweeps.md has examples")
+        return 0
     if sweep not in SWEEPS:
         sys.exit(f"sweep: expected one of {', '.join(SWEEPS)}, not '{sweep}'")
     words = list(words)
