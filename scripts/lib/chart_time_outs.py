@@ -3,55 +3,39 @@ import pathlib
 import sys
 
 import chart_time_outs_design as design
-import chart_time_outs_rows as rows
+import chart_time_outs_rows
 from chart_time_outs_runs import Sweep
 from chart_time_outs_tables import document
 from sweep_command import Command, positive
 
 
-def command_of(words):
-    command = Command("chart_time_outs", "time_outs", "Measures what a time-out in each cell would tell of deadlocks, "
-                      "against the proof; writes tables and a chart of false alarms, misses and delay over the "
-                      "time-out.", "a dozen tiny runs")
-    add = command.parser.add_argument
-    add("--seeds", metavar="N", type=positive, default=design.SEEDS, help="traffics for each load and machine; "
-        "default: %(default)s")
-    add("--program", type=pathlib.Path, help="the deadlock_tb to run; default: build/deadlock_tb, built first")
-    command.read(words)
-    return command
+class TimeOutsSweep(Command):
+    script = "chart_time_outs"
+    name = "time_outs"
+    description = ("Measures what a time-out in each cell would tell of deadlocks, against the proof; writes tables and "
+                   "a chart of false alarms, misses and delay over the time-out.")
+    quick = "a dozen tiny runs"
+    charts = ["time_outs.png"]
+    rows = chart_time_outs_rows
+    document = document
+
+    def add_options(self, add):
+        add("--seeds", metavar="N", type=positive, default=design.SEEDS, help="traffics for each load and machine; "
+            "default: %(default)s")
+        add("--program", type=pathlib.Path, help="the deadlock_tb to run; default: build/deadlock_tb, built first")
+
+    def every(self):
+        return design.quick_runs() if self.options.quick else design.runs(self.options.seeds)
+
+    def runner(self):
+        program = (self.options.program or self.root / "build" / "deadlock_tb").resolve()
+        self.check_program(program, "deadlock_tb")
+        return Sweep(program, self.places.cache)
+
+    def draw(self, results):
+        from chart_time_outs_pictures import draw  # matplotlib: only where it is needed
+        draw(results, self.places.charts / "time_outs.png")
 
 
-def write_results(command, seconds=None):
-    places = command.places
-    results = rows.Results(places.csv)
-    from chart_time_outs_pictures import draw  # matplotlib: only where it is needed
-    places.document.write_text(document(results, command.words, seconds))
-    chart = places.charts / "time_outs.png"
-    draw(results, chart)
-    print(f"{places.document}, {places.csv}, {chart}", file=sys.stderr)
-
-
-def sweep(command):
-    options, places = command.options, command.places
-    every = design.quick_runs() if options.quick else design.runs(options.seeds)
-    runs = command.chosen(every)
-    program = (options.program or command.root / "build" / "deadlock_tb").resolve()
-    command.check_program(program, "deadlock_tb")
-    runner = Sweep(program, places.cache)
-    if options.list:
-        done = runner.finished(runs)
-        for run in runs:
-            print(f"{'done ' if run in done else '     '}{run.label()}")
-        print(f"# {len(runs)} distinct runs, {len(done)} finished")
-        return 0
-    records = command.make(runner, runs)
-    if records is None:
-        return 1
-    if not command.keeps_only(runs):
-        rows.write(places.csv, every, {**runner.finished(every), **records})
-        write_results(command, sum(record["seconds"] for record in records.values()))
-    return 0
-
-
-the_command = command_of(sys.argv[1:])
-sys.exit(the_command.main(lambda: sweep(the_command), lambda: write_results(the_command)))
+if __name__ == "__main__":
+    sys.exit(TimeOutsSweep(sys.argv[1:]).main())

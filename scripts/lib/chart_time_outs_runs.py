@@ -39,5 +39,5 @@ class Sweep(ReportRunner):
     def is_whole(self, _, record):
         return all(len(record["report"][name]) == len(TIME_OUTS) for name in ["false_alarms", "early_alarms"])
 
-    def make_all(self, runs, jobs):
-        return self.make(runs, jobs, cost)
+    def cost(self, configuration):
+        return cost(configuration)

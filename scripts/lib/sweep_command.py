@@ -18,44 +18,89 @@ class Places:
     """Where things lie: in the project, or all in one folder."""
 
     def __init__(self, root, out, name):
-        self.tables = out or root / "results"
-        self.charts = out or root / "docs"
         self.cache = (out or root / "results") / "cache"
-        for folder in (self.tables, self.charts, self.cache):
+        self.cache.mkdir(parents=True, exist_ok=True)
+        self.name = name
+        self.write_to(out or root / "results", out or root / "docs")
+
+    def write_to(self, tables, charts):
+        """Tables and charts go into these folders."""
+        self.tables, self.charts = tables, charts
+        for folder in (tables, charts):
             folder.mkdir(parents=True, exist_ok=True)
-        self.csv = self.tables / f"{name}.csv"
-        self.document = self.tables / f"{name}.md"
+        self.csv = tables / f"{self.name}.csv"
+        self.document = tables / f"{self.name}.md"
 
 
 class Command:
-    """A script of the name `script` whose results are called `name`; add options of its own to `parser`."""
+    """A sweep as its users call it. Each sweep says in a subclass what its runs are and what is made of them."""
 
-    def __init__(self, script, name, description, quick):
-        self.script = script
-        self.name = name
-        self.parser = argparse.ArgumentParser(prog=f"scripts/{script}", description=description)
-        add = self.parser.add_argument
+    script = ""  # the script's name
+    name = ""  # what its results are called
+    description = ""
+    quick = ""  # what --quick makes
+    charts = []  # their files
+    rows = None  # the module that writes and reads the CSV
+    document = None  # the function that makes the tables of (rows, the user's words, seconds or None)
+
+    def __init__(self, words, called=None):
+        """The first word is the project's folder, the others are the user's. `called`: the script they called, if it is
+        not the sweep's own."""
+        self.called = called or f"scripts/{self.script}"
+        self.short = self.called.removeprefix("scripts/")
+        parser = self.parser()
+        self.root, self.options = pathlib.Path(words[0]), parser.parse_args(words[1:])
+        quick = self.options.quick
+        self.places = Places(self.root, self.options.out or (self.root / "out" / f"{self.name}-quick" if quick else
+                                                             None), self.name)
+        self.words = self.called + (" --quick" if quick else "")
+
+    def parser(self):
+        parser = argparse.ArgumentParser(prog=self.called, description=self.description)
+        add = parser.add_argument
         add("--list", action="store_true", help="print the runs and whether they are finished")
         add("--only", metavar="TEXT", help="only the runs whose name contains it; without --out they are only kept "
             "for the whole sweep")
         add("--jobs", type=positive, default=os.cpu_count(), help="runs at a time; default: one a core")
-        add("--quick", action="store_true", help=f"{quick}; without --out they go to out/{name}-quick")
+        add("--quick", action="store_true", help=f"{self.quick}; without --out they go to out/{self.name}-quick")
         add("--out", metavar="FOLDER", type=pathlib.Path, help="all results there, the cache too")
         add("--from-csv", action="store_true", help="make tables and charts again, without any run")
+        self.add_options(add)
+        return parser
 
-    def read(self, words):
-        """The first word is the project's folder, the others are the user's."""
-        self.root, self.options = pathlib.Path(words[0]), self.parser.parse_args(words[1:])
-        quick = self.options.quick
-        self.places = Places(self.root, self.options.out or (self.root / "out" / f"{self.name}-quick" if quick else
-                                                             None), self.name)
-        self.words = f"scripts/{self.script}" + (" --quick" if quick else "")
+    # What each sweep says.
+
+    def add_options(self, add):
+        """The sweep's own options."""
+
+    def every(self):
+        """All runs of the design, each once."""
+        raise NotImplementedError
+
+    def runner(self):
+        """What makes these runs."""
+        raise NotImplementedError
+
+    def print_list(self, runs, done):
+        for run in runs:
+            print(f"{'done ' if run in done else '     '}{run.label()}")
+        print(f"# {len(runs)} distinct runs, {len(done)} finished")
+
+    def wrong(self, _records):
+        """What is said about each run that ended, but not as it should."""
+        return []
+
+    def draw(self, results):
+        """The charts."""
+        raise NotImplementedError
+
+    # What they share.
 
     def say(self, text):
-        print(f"{self.script}: {text}", file=sys.stderr)
+        print(f"{self.short}: {text}", file=sys.stderr)
 
     def fail(self, text):
-        sys.exit(f"{self.script}: {text}")
+        sys.exit(f"{self.short}: {text}")
 
     def chosen(self, runs):
         """Those that --only names."""
@@ -86,16 +131,56 @@ class Command:
         print(f"{len(chosen)} runs are finished and kept for the whole sweep; tables are made of that", file=sys.stderr)
         return True
 
-    def main(self, sweep, write_results):
+    def say_wrong(self, records):
+        """The exit code."""
+        wrong = self.wrong(records)
+        for text in wrong:
+            self.say(text)
+        return 1 if wrong else 0
+
+    def write_rows(self, records):
+        self.rows.write(self.places.csv, self.every(), records)
+
+    def write_tables(self, seconds=None):
+        """Of the CSV; `seconds`: what its runs took, if that is known."""
+        results = self.rows.Results(self.places.csv)
+        self.places.document.write_text(type(self).document(results, self.words, seconds))
+
+    def draw_charts(self):
+        """Of the CSV."""
+        self.draw(self.rows.Results(self.places.csv))
+
+    def write_results(self, seconds=None):
+        self.write_tables(seconds)
+        self.draw_charts()
+        charts = ", ".join(str(self.places.charts / name) for name in self.charts)
+        print(f"{self.places.document}, {self.places.csv}, {charts}", file=sys.stderr)
+
+    def sweep(self):
+        """Makes the runs and what is written of them; the exit code."""
+        every = self.every()
+        runs, runner = self.chosen(every), self.runner()
+        if self.options.list:
+            self.print_list(runs, runner.finished(runs))
+            return 0
+        records = self.make(runner, runs)
+        if records is None:
+            return 1
+        if not self.keeps_only(runs):
+            self.write_rows({**runner.finished(every), **records})
+            self.write_results(sum(record["seconds"] for record in records.values()))
+        return self.say_wrong(records)
+
+    def main(self):
         """The exit code."""
         if self.options.from_csv:
             if not self.places.csv.is_file():
                 self.fail(f"{self.places.csv} is missing; a sweep writes it")
-            write_results()
+            self.write_results()
             return 0
         signal.signal(signal.SIGTERM, signal.default_int_handler)
         try:
-            return sweep()
+            return self.sweep()
         except (KeyboardInterrupt, Stopped):
-            print(f"\n{self.script}: stopped; what was finished is kept, the same command goes on", file=sys.stderr)
+            print(f"\n{self.short}: stopped; what was finished is kept, the same command goes on", file=sys.stderr)
             return 130

@@ -3,75 +3,72 @@ import pathlib
 import sys
 
 import sweep_deadlock_design as design
-import sweep_deadlock_rows as rows
+import sweep_deadlock_rows
 from sweep_command import Command, positive
 from sweep_deadlock_runs import Sweep
 from sweep_deadlock_tables import document
 
 
-def command_of(words):
-    command = Command("sweep_deadlock", "deadlock", "Sweeps networks, buffer depth, M, recovery, array size and seeds, "
-                      "for synthetic traffic and a scene; writes tables and charts of what locks, what ends, and what "
-                      "it costs.", "a dozen tiny runs")
-    add = command.parser.add_argument
-    add("--scene", metavar="FILE", type=pathlib.Path, help="the scene beside the synthetic traffic; default: "
-        "scenes/cornell.nff")
-    add("--limit", metavar="CYCLES", type=positive, default=design.SCENE_LIMIT, help="a scene's run is cut off after "
-        "so many, loading included; default: %(default)s")
-    add("--program-folder", metavar="FOLDER", type=pathlib.Path, help="the folder of raycell and deadlock_tb; default: "
-        "build, where they are built first")
-    command.read(words)
-    return command
+class DeadlockSweep(Command):
+    script = "sweep_deadlock"
+    name = "deadlock"
+    description = ("Sweeps networks, buffer depth, M, recovery, array size and seeds, for synthetic traffic and a scene; "
+                   "writes tables and charts of what locks, what ends, and what it costs.")
+    quick = "a dozen tiny runs"
+    charts = ["deadlock.png", "deadlock.svg", "deadlock_occupancy.png", "deadlock_bits.png"]
+    rows = sweep_deadlock_rows
+    document = document
+
+    def add_options(self, add):
+        add("--scene", metavar="FILE", type=pathlib.Path, help="the scene beside the synthetic traffic; default: "
+            "scenes/cornell.nff")
+        add("--limit", metavar="CYCLES", type=positive, default=design.SCENE_LIMIT, help="a scene's run is cut off "
+            "after so many, loading included; default: %(default)s")
+        add("--program-folder", metavar="FOLDER", type=pathlib.Path, help="the folder of raycell and deadlock_tb; "
+            "default: build, where they are built first")
+
+    @property
+    def scene(self):
+        return self.options.scene or self.root / "scenes" / "cornell.nff"
+
+    def blocks(self):
+        if not self.scene.is_file():
+            self.fail(f"{self.scene} is missing; expected a scene's file")
+        name = self.scene.stem
+        if name == design.SYNTHETIC:
+            self.fail(f"a scene can't be named '{design.SYNTHETIC}'; that is the other load")
+        return design.quick_blocks(name) if self.options.quick else design.blocks(name, self.options.limit)
+
+    def every(self):
+        return design.runs_of(self.blocks())
+
+    def runner(self):
+        programs = (self.options.program_folder or self.root / "build").resolve()
+        for name in ("raycell", "deadlock_tb"):
+            self.check_program(programs / name, "the folder of raycell and deadlock_tb")
+        return Sweep(programs, {self.scene.stem: self.scene.resolve()}, self.places.cache)
+
+    def print_list(self, runs, done):
+        for title, configurations in self.blocks().items():
+            seconds = sum(design.cost(c) for c in configurations)
+            print(f"# {title}: {len(configurations)} runs, about {seconds / 60:.1f} minutes on one core")
+        for configuration in runs:
+            print(f"{'done ' if configuration in done else '     '}{configuration.label()}")
+        seconds = sum(design.cost(c) for c in runs if c not in done)
+        print(f"# {len(runs)} distinct runs, {len(done)} finished; the rest: about {seconds / 60:.0f} minutes on one "
+              "core")
+
+    def wrong(self, records):
+        return [f"{c.label()} gave another picture than the untimed machine" for c, record in records.items()
+                if record["report"].get("equals_untimed") is False]
+
+    def draw(self, results):
+        from sweep_deadlock_pictures import draw_bits, draw_locks, draw_occupancy  # matplotlib: only where it is needed
+        charts = self.places.charts
+        draw_locks(results, charts / "deadlock")
+        draw_occupancy(results, charts / "deadlock_occupancy.png")
+        draw_bits(results, charts / "deadlock_bits.png")
 
 
-def write_results(command, seconds=None):
-    places = command.places
-    results = rows.Results(places.csv)
-    from sweep_deadlock_pictures import draw_bits, draw_locks, draw_occupancy  # matplotlib: only where it is needed
-    places.document.write_text(document(results, command.words, seconds))
-    draw_locks(results, places.charts / "deadlock")
-    draw_occupancy(results, places.charts / "deadlock_occupancy.png")
-    draw_bits(results, places.charts / "deadlock_bits.png")
-    print(f"{places.document}, {places.csv}, {places.charts / 'deadlock'}*.png", file=sys.stderr)
-
-
-def print_list(blocks, runs, done):
-    for title, configurations in blocks.items():
-        seconds = sum(design.cost(c) for c in configurations)
-        print(f"# {title}: {len(configurations)} runs, about {seconds / 60:.1f} minutes on one core")
-    for configuration in runs:
-        print(f"{'done ' if configuration in done else '     '}{configuration.label()}")
-    seconds = sum(design.cost(c) for c in runs if c not in done)
-    print(f"# {len(runs)} distinct runs, {len(done)} finished; the rest: about {seconds / 60:.0f} minutes on one core")
-
-
-def sweep(command):
-    options, places = command.options, command.places
-    scene = options.scene or command.root / "scenes" / "cornell.nff"
-    if not scene.is_file():
-        command.fail(f"{scene} is missing; expected a scene's file")
-    if scene.stem == design.SYNTHETIC:
-        command.fail(f"a scene can't be named '{design.SYNTHETIC}'; that is the other load")
-    blocks = design.quick_blocks(scene.stem) if options.quick else design.blocks(scene.stem, options.limit)
-    every = design.runs_of(blocks)
-    runs = command.chosen(every)
-    programs = (options.program_folder or command.root / "build").resolve()
-    for name in ("raycell", "deadlock_tb"):
-        command.check_program(programs / name, "the folder of raycell and deadlock_tb")
-    runner = Sweep(programs, {scene.stem: scene.resolve()}, places.cache)
-    if options.list:
-        print_list(blocks, runs, runner.finished(runs))
-        return 0
-    records = command.make(runner, runs)
-    if records is None:
-        return 1
-    if command.keeps_only(runs):
-        return 0
-    rows.write(places.csv, every, {**runner.finished(every), **records})
-    write_results(command, sum(record["seconds"] for record in records.values()))
-    wrong = [c for c, record in records.items() if record["report"].get("equals_untimed") is False]
-    return 1 if wrong else 0
-
-
-the_command = command_of(sys.argv[1:])
-sys.exit(the_command.main(lambda: sweep(the_command), lambda: write_results(the_command)))
+if __name__ == "__main__":
+    sys.exit(DeadlockSweep(sys.argv[1:]).main())

@@ -57,5 +57,5 @@ class Sweep(ReportRunner):
                 and is_number(record["report"]["cycles"]["trace"])
                 and is_number(record["report"]["storage_bits"]["ray_store"]))
 
-    def make_all(self, runs, jobs):
-        return self.make(runs, jobs, cost)
+    def cost(self, configuration):
+        return cost(configuration)

@@ -22,6 +22,14 @@ class Stopped(Exception):
     """The sweep was told to stop."""
 
 
+@dataclasses.dataclass(frozen=True)
+class Shared:
+    """What several runs need: files in the cache's folder of work, a prefix and these suffixes."""
+
+    prefix: str
+    suffixes: tuple
+
+
 def hash_of(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
 
@@ -72,6 +80,14 @@ class Runner:
         self.guard = threading.Lock()
         self.children = set()
 
+    def name_of(self, run):
+        """What the run's record is called."""
+        return run.label()
+
+    def cost(self, run):
+        """Rough processor seconds."""
+        raise NotImplementedError
+
     def load(self, run):
         """The finished run's record, or None."""
         raise NotImplementedError
@@ -85,17 +101,29 @@ class Runner:
         """Makes a run; stores and returns its record."""
         raise NotImplementedError
 
+    def make_apart(self, run):
+        """The same in a process of its own; what it shares with others lies there and stays."""
+        return self.make_one(run)
+
+    def shared(self, _run):
+        """What must be made before `make_apart`, or None."""
+        return None
+
+    def make_shared(self, run):
+        """Makes what this run shares."""
+        raise NotImplementedError
+
     def prepare(self, pending):
         """Called with the runs to be made before the first of them."""
 
-    def make(self, runs, jobs, cost):
-        """Makes the runs that are not in the cache, those of the greatest cost (seconds) first; returns all records
-        and {run: what went wrong}."""
+    def make_all(self, runs, jobs):
+        """Makes the runs that are not in the cache, those of the greatest cost first; returns all records and
+        {run: what went wrong}."""
         self.cache.occupy()
         records, failures = self.finished(runs), {}
-        pending = sorted((run for run in runs if run not in records), key=lambda run: -cost(run))
+        pending = sorted((run for run in runs if run not in records), key=self.cost, reverse=True)
         self.prepare(pending)
-        progress = Progress(len(runs), len(records), sum(cost(run) for run in pending))
+        progress = Progress(len(runs), len(records), sum(self.cost(run) for run in pending))
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             futures = {pool.submit(self.make_one, run): run for run in pending}
             try:
@@ -108,7 +136,7 @@ class Runner:
                         failures[run] = str(error)
                     else:
                         raise error
-                    progress.step(cost(run), len(failures))
+                    progress.step(self.cost(run), len(failures))
             except BaseException:
                 self.stop(pool)
                 raise
@@ -175,7 +203,7 @@ class ReportRunner(Runner):
 
     def load(self, run):
         """The finished run, or None; whatever is not the whole result of just this run counts as none."""
-        record = self.cache.read(run.label())
+        record = self.cache.read(self.name_of(run))
         try:
             whole = (record["configuration"] == dataclasses.asdict(run) and is_number(record["seconds"])
                      and self.is_whole(run, record))
@@ -185,7 +213,8 @@ class ReportRunner(Runner):
 
     def make_one(self, run):
         start = time.monotonic()
-        folder = self.cache.work / run.label()
+        folder = self.cache.work / self.name_of(run)
+        shutil.rmtree(folder, ignore_errors=True)  # of an attempt that was killed
         folder.mkdir()
         # Codes 3 and 4 are verdicts of a run, and the report says which.
         self.execute([*self.command(run), "-o", str(folder / "run"), "--quiet", *run.options()], codes=(0, 3, 4))
@@ -194,7 +223,7 @@ class ReportRunner(Runner):
         shutil.rmtree(folder)
         record = {"configuration": dataclasses.asdict(run), "seconds": time.monotonic() - start, **self.more(run),
                   "report": report}
-        self.cache.write(run.label(), record)
+        self.cache.write(self.name_of(run), record)
         return record
 
 
