@@ -11,6 +11,9 @@
 namespace raycell {
 namespace {
 
+/// Cycles of a thousand of the longest back-offs, which are 127 bases each.
+Cycle longest_backoffs(const Environment& env) { return 1000 * (Cycle(env.costs().backoff) * 128); }
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -88,7 +91,7 @@ void Machine::bind_pipeline() {
 }
 
 Cycle Machine::livelock_window() const {
-    // The longest back-off is 127 bases; a ray and its answer may cross the array and visit the exterior, and
+    // A ray and its answer may cross the array and visit the exterior, and
     // each operation may be the dearest of the table, once per source.
     const Environment& env = environment_;
     Cycle dearest = 0;
@@ -96,8 +99,8 @@ Cycle Machine::livelock_window() const {
         dearest = std::max(dearest, Cycle(env.costs().*member));
     const Cycle span = Cycle(env.width() + env.height());
     const Cycle hop = 64 + Cycle(env.cycles_for(env.bits.ray)) + Cycle(env.costs().walk_step);
-    return 1000 * (Cycle(env.costs().backoff) * 128 + span * hop + Cycle(env.machine.exterior_latency) +
-                   dearest * Cycle(1 + env.context.scene.sources.size()));
+    return longest_backoffs(env) + 1000 * (span * hop + Cycle(env.machine.exterior_latency) +
+                                           dearest * Cycle(1 + env.context.scene.sources.size()));
 }
 
 bool Machine::watch(void* self, Cycle now) {
@@ -108,8 +111,11 @@ bool Machine::watch(void* self, Cycle now) {
         return false;
     }
     machine.activity_.observe(now, env.counters);
-    if (env.phase == Phase::trace && env.counters.rays_destroyed > 0 &&
-        now - std::max(env.counters.last_progress, env.phase_start) > machine.livelock_window()) {
+    const Cycle idle = now - std::max(env.counters.last_progress, env.phase_start);
+    // The window goes through the whole cost table, and this is called in every cycle: its largest part
+    // first.
+    if (env.phase == Phase::trace && env.counters.rays_destroyed > 0 && idle > longest_backoffs(env) &&
+        idle > machine.livelock_window()) {
         // Nothing comes home any more. With no new rays on their way, all that is not locked comes to rest.
         if (!env.draining && env.observer) env.observer->draining(true, now);
         env.draining = true;
