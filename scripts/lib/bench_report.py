@@ -7,6 +7,7 @@ NAMES = {"sc_fifo": "`sc_fifo`, an SC_METHOD per cell", "cell_module": "`CellMod
          "bare_cells": "the same cells, no kernel", "bare_tokens": "tokens alone"}
 GOALS = [("cell_tile", "cell_module", 5, "`CellTile` / `CellModule`"),
          ("cell_tile", "bare_cells", 0.4, "`CellTile` / the same cells without the kernel"),
+         ("cell_tile", "bare_tokens", 0.4, "`CellTile` / tokens alone"),
          ("cell_module", "sc_fifo", 2, "`CellModule` / `sc_fifo`")]
 GOAL_SIDE = 128
 
@@ -70,7 +71,7 @@ def write_table(path, cases, groups, jobs):
     lines += ["", "## Seconds to build and elaborate", ""]
     lines += table(head, per_side(groups, held, sides, lambda g: f"{median(g, 'build_seconds'):.2f}"))
     if jobs:
-        lines += ["", "## Whole jobs", "", "`raycell render`, one run each.", ""] + jobs_table(jobs)
+        lines += ["", "## Whole jobs", "", "`raycell render`, one run each, wall seconds.", ""] + jobs_table(jobs)
     path.write_text("\n".join(lines) + "\n")
 
 
