@@ -32,7 +32,7 @@ void expect_interrupted(const Workshop& workshop, const Finished& finished) {
 
 TEST(Interrupted, WhileLoadingARunKeepsWhatItHas) {
     const Workshop workshop;
-    const Finished finished = interrupted(workshop, "TERM", "3", long_run({"--link-bits", "1"}));
+    const Finished finished = interrupted(workshop, "TERM", "2", long_run({"--link-bits", "1"}));
     expect_interrupted(workshop, finished);
     EXPECT_LT(finished.seconds, 15);
 }
@@ -41,10 +41,10 @@ TEST(Interrupted, WhileTracingARunKeepsWhatItHas) {
     const Workshop workshop;
     // Little to load, much to trace.
     const Finished finished =
-        interrupted(workshop, "INT", "6",
+        interrupted(workshop, "INT", "12",
                     joined({RAYCELL_PROGRAM, "render", own_scene("facing_mirrors.nff").string(), "-o",
                             "results/a", "--quiet"},
-                           {"--cells", "128x128", "--link-bits", "4", "--max-depth", "60", "--min-weight",
+                           {"--cells", "256x256", "--link-bits", "4", "--max-depth", "60", "--min-weight",
                             "0", "--ray-store", "61"}));
     expect_interrupted(workshop, finished);
     const Json json = Json::parse(read_text(workshop.result("a.json")));
