@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cells/split_link.hpp"
+
 namespace raycell {
 namespace {
 
@@ -35,9 +37,9 @@ std::size_t Granularity::modules(int width, int height) const {
 Array::Array(sc_core::sc_module_name name, Environment& environment, const Granularity& granularity)
     : sc_module(name), environment_(environment) {
     const int width = environment.width();
-    const int height = environment.height();
-    cells_.reserve(std::size_t(width) * std::size_t(height));
-    for (int y = 0; y < height; ++y) {
+    const ArrayShare& share = environment.share;
+    cells_.reserve(std::size_t(width) * std::size_t(share.rows()));
+    for (int y = share.first; y < share.end; ++y) {
         for (int x = 0; x < width; ++x) cells_.emplace_back(environment, x, y);
     }
     make_hosts(granularity);
@@ -50,7 +52,7 @@ void Array::make_hosts(const Granularity& granularity) {
     };
     const int tile_side = granularity.tile_side;
     const int columns = (environment_.width() + tile_side - 1) / tile_side;
-    const int rows = (environment_.height() + tile_side - 1) / tile_side;
+    const int rows = (environment_.share.rows() + tile_side - 1) / tile_side;
     for (int i = 0; !granularity.every_cell && i < columns * rows; ++i) {
         tiles_.push_back(
             std::make_unique<CellTile>(name_at("tile", i % columns, i / columns).c_str(), environment_));
@@ -61,35 +63,78 @@ void Array::make_hosts(const Granularity& granularity) {
             modules_[i] =
                 std::make_unique<CellModule>(name_at("cell", cell.x(), cell.y()).c_str(), environment_, cell);
         } else {
-            cell.set_host(*tiles_[std::size_t(cell.y() / tile_side * columns + cell.x() / tile_side)]);
+            const int row = (cell.y() - environment_.share.first) / tile_side;
+            cell.set_host(*tiles_[std::size_t(row * columns + cell.x() / tile_side)]);
         }
     }
 }
 
 void Array::make_links() {
+    const ArrayShare& share = environment_.share;
     ways_.reserve(cells_.size() * side_count);
-    for (int y = 0; y < environment_.height(); ++y) {
+    for (int y = share.first; y < share.end; ++y) {
         for (int x = 0; x < environment_.width(); ++x) {
             for (int side = 0; side < side_count; ++side) make_link(x, y, Side(side));
         }
     }
+    if (share.above) make_half_links(*share.above, share.first, Side::north);
+    if (share.below) make_half_links(*share.below, share.end - 1, Side::south);
 }
 
 void Array::make_link(int x, int y, Side side) {
     const int to_x = x + step_x(side);
     const int to_y = y + step_y(side);
-    if (to_x < 0 || to_x >= environment_.width() || to_y < 0 || to_y >= environment_.height()) return;
-    Link& link =
-        links_.emplace_back(environment_.scheduler, environment_.classes.count,
-                            environment_.machine.buffer_depth, used_classes(environment_.classes, side));
-    ways_.push_back(std::uint32_t(index(x, y)) * side_count + std::uint32_t(side));
-    if (environment_.machine.stall > 0) {
-        environment_.stall(link, "cell_" + std::to_string(x) + "_" + std::to_string(y) + "." + name_of(side));
-    }
+    if (to_x < 0 || to_x >= environment_.width() || !environment_.share.contains(to_y)) return;
+    Link& link = add_link(to_x, to_y, side);
+    stall(link, x, y, side);
     link.connect_source(cell(x, y));
     link.connect_sink(cell(to_x, to_y));
     bind_out(x, y, side, link);
     bind_in(to_x, to_y, opposite(side), link);
+}
+
+/// A link into cell (to_x, to_y); `side` is its source's.
+Link& Array::add_link(int to_x, int to_y, Side side) {
+    Link& link =
+        links_.emplace_back(environment_.scheduler, environment_.classes.count,
+                            environment_.machine.buffer_depth, used_classes(environment_.classes, side));
+    ways_.push_back(std::uint32_t(index(to_x, to_y)) * side_count + std::uint32_t(side));
+    return link;
+}
+
+void Array::stall(Link& link, int x, int y, Side side) const {
+    if (!(environment_.machine.stall > 0)) return;
+    environment_.stall(link, "cell_" + std::to_string(x) + "_" + std::to_string(y) + "." + name_of(side));
+}
+
+/// Row y and its neighbour `outwards`, another rank's: of each column the link to the south, then that to the
+/// north, on both sides of the cut.
+void Array::make_half_links(SplitLinks& split, int y, Side outwards) {
+    for (int x = 0; x < environment_.width(); ++x) {
+        if (outwards == Side::south) {
+            make_half_link_out(split, x, y, outwards);
+            make_half_link_in(split, x, y, outwards);
+        } else {
+            make_half_link_in(split, x, y, outwards);
+            make_half_link_out(split, x, y, outwards);
+        }
+    }
+}
+
+void Array::make_half_link_out(SplitLinks& split, int x, int y, Side side) {
+    Link& link =
+        split.make_source(environment_.scheduler, environment_.classes.count,
+                          environment_.machine.buffer_depth, used_classes(environment_.classes, side));
+    stall(link, x, y, side);
+    link.connect_source(cell(x, y));
+    bind_out(x, y, side, link);
+}
+
+void Array::make_half_link_in(SplitLinks& split, int x, int y, Side from) {
+    Link& link = add_link(x, y, opposite(from));
+    split.add_sink(link);
+    link.connect_sink(cell(x, y));
+    bind_in(x, y, from, link);
 }
 
 CellModule* Array::module(int x, int y) {
@@ -112,11 +157,6 @@ void Array::bind_out(int x, int y, Side side, Link& link) {
     } else {
         cell(x, y).connect_out(side, link);
     }
-}
-
-std::size_t Array::sink_of(std::size_t link) const {
-    const Cell& source = cells_[ways_[link] / side_count];
-    return index(source.x() + step_x(side_of(link)), source.y() + step_y(side_of(link)));
 }
 
 void Array::join_border(int x, int y, Side side, Link& from_outside, Link& to_outside) {
@@ -149,9 +189,9 @@ void Array::begin_phase() {
 }
 
 std::uint64_t Array::schedule_hash() const {
-    std::uint64_t hash = 0xcbf29ce484222325ULL;
-    for (const Cell& cell : cells_) hash = (hash ^ cell.schedule_hash()) * 0x100000001b3ULL;
-    return hash;
+    ScheduleHash hash;
+    for (const Cell& cell : cells_) hash.add(cell.schedule_hash());
+    return hash.value();
 }
 
 double Array::bytes(const Granularity& granularity, int width, int height, const BufferClasses& classes) {

@@ -24,6 +24,18 @@ struct Granularity {
     std::size_t modules(int width, int height) const;
 };
 
+/// The hashes of cells' schedules, joined in the order of the cells.
+class ScheduleHash {
+  public:
+    void add(std::uint64_t cell) { value_ = (value_ ^ cell) * 0x100000001b3ULL; }
+    std::uint64_t value() const { return value_; }
+
+  private:
+    std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+/// Of an array that several ranks share, each has its rows (Environment::share); a cell's place is the whole
+/// array's.
 class Array : public sc_core::sc_module {
   public:
     Array(sc_core::sc_module_name name, Environment& environment, const Granularity& granularity = {});
@@ -39,8 +51,8 @@ class Array : public sc_core::sc_module {
 
     std::deque<Link>& links() { return links_; }
     const std::deque<Link>& links() const { return links_; }
-    /// Row-major index of the cell that links()[link] leads to: where its buffers stand.
-    std::size_t sink_of(std::size_t link) const;
+    /// Index into cells() of the cell that links()[link] leads to: where its buffers stand.
+    std::size_t sink_of(std::size_t link) const { return ways_[link] / side_count; }
     /// The side of its source over which links()[link] leads.
     Side side_of(std::size_t link) const { return Side(ways_[link] % side_count); }
 
@@ -60,11 +72,16 @@ class Array : public sc_core::sc_module {
 
   private:
     std::size_t index(int x, int y) const {
-        return std::size_t(y) * std::size_t(environment_.width()) + std::size_t(x);
+        return std::size_t(y - environment_.share.first) * std::size_t(environment_.width()) + std::size_t(x);
     }
     void make_hosts(const Granularity& granularity);
     void make_links();
     void make_link(int x, int y, Side side);
+    void make_half_links(SplitLinks& split, int y, Side outwards);
+    void make_half_link_out(SplitLinks& split, int x, int y, Side side);
+    void make_half_link_in(SplitLinks& split, int x, int y, Side from);
+    Link& add_link(int to_x, int to_y, Side side);
+    void stall(Link& link, int x, int y, Side side) const;
     void bind_in(int x, int y, Side side, Link& link);
     void bind_out(int x, int y, Side side, Link& link);
     void end_of_elaboration() override;
@@ -74,7 +91,7 @@ class Array : public sc_core::sc_module {
     std::vector<std::unique_ptr<CellTile>> tiles_;
     std::map<std::size_t, std::unique_ptr<CellModule>> modules_;  ///< by the cell's index
     std::deque<Link> links_;
-    std::vector<std::uint32_t> ways_;  ///< by link: index of its source · 4 + side
+    std::vector<std::uint32_t> ways_;  ///< by link: index of its sink · 4 + side of its source
 };
 
 }  // namespace raycell

@@ -1,5 +1,9 @@
 #include "cells/environment.hpp"
 
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
 #include "cells/link.hpp"
 #include "model/stall.hpp"
 
@@ -10,6 +14,20 @@ void Environment::stall(Link& link, const std::string& name) const {
     std::uint64_t who = 0;
     for (const char c : name) who = mix_bits(who, std::uint64_t(c));
     link.set_stall(machine.stall, machine.seed, who);
+}
+
+void join(Counters& sum, const Counters& other) {
+    // All but the last are sums of words, so that none can be forgotten here.
+    static_assert(std::is_trivially_copyable_v<Counters> && sizeof(Counters) % sizeof(std::uint64_t) == 0);
+    constexpr std::size_t words = sizeof(Counters) / sizeof(std::uint64_t);
+    static_assert(offsetof(Counters, last_progress) == (words - 1) * sizeof(std::uint64_t));
+    std::uint64_t a[words];
+    std::uint64_t b[words];
+    std::memcpy(a, &sum, sizeof sum);
+    std::memcpy(b, &other, sizeof other);
+    for (std::size_t i = 0; i + 1 < words; ++i) a[i] += b[i];
+    a[words - 1] = std::max(a[words - 1], b[words - 1]);
+    std::memcpy(static_cast<void*>(&sum), a, sizeof sum);
 }
 
 int Environment::load_bits(const LoadItem& item) const {

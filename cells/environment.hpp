@@ -11,6 +11,7 @@
 namespace raycell {
 
 class Link;
+class SplitLinks;
 
 enum class Phase : std::uint8_t { load, precast, trace };
 
@@ -36,6 +37,9 @@ struct Counters {
         0;  ///< last cycle in which an end-of-scene mark, or an answer other than "postponed", came home
 };
 
+/// Adds the counters of another part of the same machine.
+void join(Counters& sum, const Counters& other);
+
 /// A tested ray that wants to move on.
 struct WaitingRay {
     Cycle since;
@@ -51,6 +55,18 @@ struct LinkCycles {
     int verdict;
 };
 
+/// The part of an array that this process simulates: rows of cells from `first` on, `end` not included. The
+/// others are another rank's, and the links to them are halves.
+struct ArrayShare {
+    int first = 0;
+    int end = 0;
+    SplitLinks* above = nullptr;  ///< with whoever has row first - 1; null: that is the array's border
+    SplitLinks* below = nullptr;  ///< with whoever has row `end`
+
+    bool contains(int y) const { return y >= first && y < end; }
+    int rows() const { return end - first; }
+};
+
 struct Environment {
     const PictureSettings settings;
     const MachineSettings machine;
@@ -58,6 +74,7 @@ struct Environment {
     MessageBits bits;
     LinkCycles cycles;  ///< for `bits`: no division in every hop
     BufferClasses classes;
+    const ArrayShare share;
     Scheduler& scheduler;
     Picture& picture;
     MessagePools pools;
@@ -70,9 +87,10 @@ struct Environment {
     bool draining = false;  ///< no cell sends new rays: what still stands in a buffer at the end is locked
 
     /// The scene (and the traffic, which may be null) must outlive the environment; the settings are copied.
+    /// Without `part` the whole array is simulated here.
     Environment(const CellScene& scene, const PictureSettings& picture_settings,
                 const MachineSettings& machine_settings, Scheduler& s, Picture& p,
-                const SyntheticTraffic* traffic = nullptr)
+                const SyntheticTraffic* traffic = nullptr, const ArrayShare* part = nullptr)
         : settings(picture_settings),
           machine(machine_settings),
           context(scene, settings, traffic),
@@ -80,6 +98,7 @@ struct Environment {
           cycles{cycles_for(bits.ray), cycles_for(bits.shadow_ray), cycles_for(bits.intensity),
                  cycles_for(bits.verdict)},
           classes(buffer_classes(machine.networks)),
+          share(part ? *part : ArrayShare{0, scene.frame.height, nullptr, nullptr}),
           scheduler(s),
           picture(p) {}
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cells/bytes.hpp"
 #include "cells/message.hpp"
 
 namespace raycell {
@@ -27,6 +28,10 @@ class Ledger {
     static constexpr std::size_t most_entries = 1000000;
 
     void add(const RayPacket& packet, int x, int y, std::uint64_t cycle);
+
+    /// For another part of the same machine; add() keeps the earliest entries.
+    void write(ByteWriter& bytes) const;
+    void add(ByteReader& bytes);
 
     const std::vector<Entry>& entries() const { return entries_; }
     std::uint64_t destroyed() const { return destroyed_; }

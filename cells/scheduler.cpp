@@ -7,6 +7,9 @@ Scheduler::Scheduler(sc_core::sc_module_name name, sc_core::sc_time period)
     SC_METHOD(tick);
     sensitive << next_;
     dont_initialize();
+    SC_METHOD(hold_meeting);
+    sensitive << meeting_;
+    dont_initialize();
 }
 
 void Scheduler::schedule(Cycle cycle) {
@@ -16,9 +19,31 @@ void Scheduler::schedule(Cycle cycle) {
         return;
     }
     scheduled_ = cycle;
-    if (without_kernel_) return;
+    if (without_kernel_ || meet_) return;  // what is run next is for the meeting to say
+    notify(cycle);
+}
+
+void Scheduler::notify(Cycle cycle) {
     // An earlier notification replaces a later one.
-    next_.notify(sc_core::sc_time::from_value(period_.value() * (cycle - now_)));
+    next_.notify(sc_core::sc_time::from_value(period_.value() * (cycle - kernel_now_)));
+}
+
+/// The end of a cycle that is shared with others. Cycles in which nobody here has anything to do are run
+/// right here: they cost no more than the meeting.
+void Scheduler::hold_meeting() {
+    for (;;) {
+        const Cycle next = meet_(meet_argument_, scheduled_);
+        if (next == never) return;
+        if (next == scheduled_) {
+            notify(next);
+            return;
+        }
+        now_ = next;
+        if (watch_ && !watch_(watch_argument_, now_)) {
+            stopped_ = true;
+            return;
+        }
+    }
 }
 
 Cycle Scheduler::next_busy() const {
@@ -40,7 +65,7 @@ bool Scheduler::run_next() {
 
 void Scheduler::tick() {
     if (sampler_) sampler_(now_);
-    now_ = scheduled_;
+    now_ = kernel_now_ = scheduled_;
     scheduled_ = never;
     if (watch_ && !watch_(watch_argument_, now_)) {
         stopped_ = true;
@@ -62,6 +87,7 @@ void Scheduler::tick() {
     }
     const Cycle next = next_busy();
     if (next < scheduled_) schedule(next);
+    if (meet_) meeting_.notify(sc_core::SC_ZERO_TIME);  // once all that was activated has run
 }
 
 }  // namespace raycell

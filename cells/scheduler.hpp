@@ -76,6 +76,19 @@ class Scheduler : public sc_core::sc_module {
     /// The cycle that will be run next, or is about to be when a sampler is called; `never` if none is known.
     Cycle next() const { return scheduled_; }
 
+    /// For a machine that shares its cycles with others (pipeline/rank_exchange.hpp): called after every
+    /// cycle that was run, when all is done in it, with the next one in which somebody here is to be woken.
+    /// Returns the next cycle that is to be run, by all of them alike; `never` ends the run. It may wake
+    /// clients.
+    void set_meeting(Cycle (*meet)(void*, Cycle), void* argument) {
+        meet_ = meet;
+        meet_argument_ = argument;
+    }
+    /// To be called before each sc_start(): others may have something to do where nobody here has.
+    void begin() {
+        if (meet_) meeting_.notify(sc_core::SC_ZERO_TIME);
+    }
+
     std::uint64_t activations() const { return activations_; }
 
     /// Runs the next cycle, without SystemC's kernel; false if there was none. For measuring what the kernel
@@ -86,15 +99,19 @@ class Scheduler : public sc_core::sc_module {
     static constexpr Cycle slots = 4096;  // power of two, above every usual delay
 
     void tick();
+    void hold_meeting();
     void schedule(Cycle cycle);
+    void notify(Cycle cycle);
     Cycle next_busy() const;
 
     sc_core::sc_time period_;
     sc_core::sc_event next_;
+    sc_core::sc_event meeting_;
     std::vector<std::vector<Client*>> wheel_;
     std::vector<Client*> running_;
     std::map<Cycle, std::vector<Client*>> far_;  ///< beyond one turn of the wheel
     Cycle now_ = 0;
+    Cycle kernel_now_ = 0;  ///< at which the kernel stands: cycles that only others run pass it by
     Cycle scheduled_ = never;
     Cycle limit_ = never;
     std::uint64_t waiting_ = 0;  ///< entries in the wheel
@@ -104,6 +121,8 @@ class Scheduler : public sc_core::sc_module {
     bool without_kernel_ = false;
     bool (*watch_)(void*, Cycle) = nullptr;
     void* watch_argument_ = nullptr;
+    Cycle (*meet_)(void*, Cycle) = nullptr;
+    void* meet_argument_ = nullptr;
     std::function<void(Cycle)> sampler_;
 };
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 
+#include "cells/bytes.hpp"
 #include "cells/message.hpp"
 #include "cells/wait_graph.hpp"
 
@@ -43,6 +44,19 @@ class WaitMap {
                                unsigned child) const;
 
     WaitGraph& graph() { return graph_; }
+
+    // For a machine that several ranks simulate: each writes the places of its own and reads the others'.
+    /// All places and what stands there.
+    void write(ByteWriter& bytes) const;
+    /// Adds what another map wrote. Its places have no owners here.
+    void read(ByteReader& bytes);
+    /// Makes a place known here as this owner's.
+    void name(const void* owner, WaitGraph::Kind kind, std::uint32_t number, Index node) {
+        owners_[{owner, kind, number}] = node;
+    }
+    /// What the places [first, end) wait for.
+    void write_waits(ByteWriter& bytes, Index first, Index end) const;
+    void read_waits(ByteReader& bytes);
 
   private:
     using Owner = std::tuple<const void*, WaitGraph::Kind, std::uint32_t>;

@@ -291,6 +291,16 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
     return true;
 }
 
+void StorageCounts::add(const StorageCounts& other) {
+    voxels += other.voxels;
+    edges += other.edges;
+    overflowed += other.overflowed;
+    occupied_cells += other.occupied_cells;
+    max_voxels = std::max(max_voxels, other.max_voxels);
+    bits += other.bits;
+    max_cell_bits = std::max(max_cell_bits, other.max_cell_bits);
+}
+
 void StorageCounts::add(const CellStore& store, const VoxelBits& each) {
     const std::uint64_t cell_voxels = store.voxels.size();
     const std::uint64_t cell_bits =

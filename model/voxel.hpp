@@ -69,6 +69,7 @@ struct StorageCounts {
     std::uint64_t bits = 0;           ///< of all cells' voxels and edges
     std::uint64_t max_cell_bits = 0;  ///< of one cell's
     void add(const CellStore& store, const VoxelBits& each);
+    void add(const StorageCounts& other);  ///< of other cells
 };
 
 /// Bits of an object's features: colour, Kd, Ks, T, Shine, index of refraction, mirror or not.

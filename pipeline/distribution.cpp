@@ -1,5 +1,7 @@
 #include "pipeline/distribution.hpp"
 
+#include "cells/split_link.hpp"
+
 namespace raycell {
 
 void RowDistributor::take(LoadItem& item, Cycle now) {
@@ -58,20 +60,36 @@ Cycle RowDistributor::step(Cycle now) {
     return now + 1;
 }
 
-Distribution::Distribution(sc_core::sc_module_name name, Environment& environment) : sc_module(name) {
-    for (int y = 0; y < environment.height(); ++y) {
+Distribution::Distribution(sc_core::sc_module_name name, Environment& environment)
+    : sc_module(name), first_(environment.share.first) {
+    const ArrayShare& share = environment.share;
+    const int depth = environment.machine.buffer_depth;
+    const auto name_down = [](Link& link, int y) {
+        link.set_name("distribution.row_" + std::to_string(y) + ".down");
+    };
+    for (int y = share.first; y < share.end; ++y) {
         const std::string row_name = "row_" + std::to_string(y);
         rows_.push_back(std::make_unique<RowDistributor>(row_name.c_str(), environment, y));
         if (y == 0) continue;
-        links_.push_back(std::make_unique<Link>(environment.scheduler, 1, environment.machine.buffer_depth));
+        links_.push_back(std::make_unique<Link>(environment.scheduler, 1, depth));
         Link& link = *links_.back();
-        link.set_name("distribution.row_" + std::to_string(y - 1) + ".down");
+        name_down(link, y - 1);
+        link.connect_sink(row(y));
+        row(y).in.bind(link);
+        if (y == share.first) {
+            share.above->add_sink(link);
+            continue;
+        }
         environment.stall(link, link.name());
-        link.connect_source(*rows_[std::size_t(y - 1)]);
-        link.connect_sink(*rows_.back());
-        rows_[std::size_t(y - 1)]->down.bind(link);
-        rows_.back()->in.bind(link);
+        link.connect_source(row(y - 1));
+        row(y - 1).down.bind(link);
     }
+    if (!share.below) return;
+    Link& link = share.below->make_source(environment.scheduler, 1, depth);
+    name_down(link, share.end - 1);
+    environment.stall(link, link.name());
+    link.connect_source(*rows_.back());
+    rows_.back()->down.bind(link);
 }
 
 StageStatistics Distribution::statistics() const {

@@ -36,12 +36,12 @@ class RowDistributor : public Stage {
     Cycle ready_ = 0;
 };
 
-/// The column of distributors; row 0 takes what precomputation sends.
+/// The column of distributors; row 0 takes what precomputation sends. Of a shared array, the share's rows.
 class Distribution : public sc_core::sc_module {
   public:
     Distribution(sc_core::sc_module_name name, Environment& environment);
-    RowDistributor& row(int y) { return *rows_[std::size_t(y)]; }
-    const RowDistributor& row(int y) const { return *rows_[std::size_t(y)]; }
+    RowDistributor& row(int y) { return *rows_[std::size_t(y - first_)]; }
+    const RowDistributor& row(int y) const { return *rows_[std::size_t(y - first_)]; }
     StageStatistics statistics() const;
     /// Load messages in the column and in no row of cells.
     std::size_t holds() const;
@@ -49,6 +49,7 @@ class Distribution : public sc_core::sc_module {
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
 
   private:
+    int first_;  ///< the share's first row
     std::vector<std::unique_ptr<RowDistributor>> rows_;
     std::vector<std::unique_ptr<Link>> links_;
 };

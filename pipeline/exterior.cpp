@@ -3,32 +3,11 @@
 #include <algorithm>
 
 namespace raycell {
+namespace {
 
-Exterior::Exterior(sc_core::sc_module_name name, Environment& environment, const ExteriorTracer& tracer)
-    : Stage(name, environment),
-      tracer_(tracer),
-      processors_(std::size_t(environment.machine.exterior_processors)) {}
-
-void Exterior::join(Array& array) {
-    Environment& env = environment();
-    const auto join_cell = [&](int x, int y, Side side) {
-        const auto make = [&](const char* way) {
-            links_.push_back(
-                std::make_unique<Link>(env.scheduler, env.classes.count, env.machine.buffer_depth));
-            links_.back()->set_name("border_" + std::to_string(x) + "_" + std::to_string(y) + way);
-            env.stall(*links_.back(), links_.back()->name());
-            return links_.back().get();
-        };
-        Link* out = make(".out");
-        Link* in = make(".in");
-        out->connect_source(array.cell(x, y));
-        out->connect_sink(*this);
-        out->report_arrivals(*this, std::uint32_t(ports_.size()));
-        in->connect_source(*this);
-        in->connect_sink(array.cell(x, y));
-        array.join_border(x, y, side, *in, *out);
-        ports_.push_back({x, y, out, in});
-    };
+/// Every side of a cell that is the array's border, in the order of the ports.
+template <typename F>
+void for_border(const Environment& env, const F& join_cell) {
     for (int y = 0; y < env.height(); ++y) {
         join_cell(0, y, Side::west);
         join_cell(env.width() - 1, y, Side::east);
@@ -37,6 +16,61 @@ void Exterior::join(Array& array) {
         join_cell(x, 0, Side::north);
         join_cell(x, env.height() - 1, Side::south);
     }
+}
+
+std::string name_border(int x, int y, const char* way) {
+    return "border_" + std::to_string(x) + "_" + std::to_string(y) + way;
+}
+
+}  // namespace
+
+Exterior::Exterior(sc_core::sc_module_name name, Environment& environment, const ExteriorTracer& tracer)
+    : Stage(name, environment),
+      tracer_(tracer),
+      processors_(std::size_t(environment.machine.exterior_processors)) {}
+
+void Exterior::join(Array& array, RankExchange* ranks) {
+    Environment& env = environment();
+    for_border(env, [&](int x, int y, Side side) {
+        SplitLinks* split = env.share.contains(y) ? nullptr : ranks->links_to(ranks->owner(y));
+        const auto make = [&](const char* way) {
+            links_.push_back(
+                std::make_unique<Link>(env.scheduler, env.classes.count, env.machine.buffer_depth));
+            links_.back()->set_name(name_border(x, y, way));
+            return links_.back().get();
+        };
+        Link* out = make(".out");
+        Link* in = make(".in");
+        out->connect_sink(*this);
+        out->report_arrivals(*this, std::uint32_t(ports_.size()));
+        in->connect_source(*this);
+        env.stall(*in, in->name());
+        if (split) {
+            split->add_sink(*out);
+            split->add_source(*in);
+        } else {
+            env.stall(*out, out->name());
+            out->connect_source(array.cell(x, y));
+            in->connect_sink(array.cell(x, y));
+            array.join_border(x, y, side, *in, *out);
+        }
+        ports_.push_back({x, y, out, in});
+    });
+}
+
+void Exterior::join_remote(Array& array, Environment& env, RankExchange& ranks) {
+    SplitLinks& split = *ranks.links_to(0);
+    const int classes = env.classes.count;
+    for_border(env, [&](int x, int y, Side side) {
+        if (!env.share.contains(y)) return;
+        Link& out = split.make_source(env.scheduler, classes, env.machine.buffer_depth);
+        out.set_name(name_border(x, y, ".out"));
+        env.stall(out, out.name());
+        Link& in = split.make_sink(env.scheduler, classes, env.machine.buffer_depth);
+        out.connect_source(array.cell(x, y));
+        in.connect_sink(array.cell(x, y));
+        array.join_border(x, y, side, in, out);
+    });
 }
 
 void Exterior::arrives(std::uint32_t port, int index, Cycle visible) {

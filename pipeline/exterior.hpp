@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cells/array.hpp"
+#include "pipeline/rank_exchange.hpp"
 #include "pipeline/stage.hpp"
 
 namespace raycell {
@@ -18,8 +19,11 @@ class Exterior : public Stage, public Link::Arrivals {
   public:
     Exterior(sc_core::sc_module_name name, Environment& environment, const ExteriorTracer& tracer);
 
-    /// Makes the border links and joins them to the array. Before the simulation starts.
-    void join(Array& array);
+    /// Makes the border links and joins them to the array. Before the simulation starts. Of an array that
+    /// several ranks share, rank 0 has the exterior; the links of the others' cells are halves.
+    void join(Array& array, RankExchange* ranks = nullptr);
+    /// For the other ranks: the cells' halves of the links to rank 0's exterior.
+    static void join_remote(Array& array, Environment& environment, RankExchange& ranks);
 
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
     void arrives(std::uint32_t port, int index, Cycle visible) override;

@@ -40,27 +40,34 @@ const char* name_of(Verdict verdict) {
 
 Machine::Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
                  const MachineSettings& machine, const ExteriorTracer* tracer,
-                 const SyntheticTraffic* traffic, const Granularity& granularity)
+                 const SyntheticTraffic* traffic, const Granularity& granularity, RankExchange* ranks)
     : sc_module(name),
       scheduler_("scheduler", sc_core::sc_time(1e3 / machine.clock_mhz, sc_core::SC_NS)),
       picture_(scene.frame.width, scene.frame.height),
-      environment_(scene, settings, machine, scheduler_, picture_, traffic),
+      environment_(scene, settings, machine, scheduler_, picture_, traffic,
+                   ranks ? &ranks->share() : nullptr),
       geometry_("geometry", environment_),
       precomputation_("precomputation", environment_),
       distribution_("distribution", environment_),
       array_("array", environment_, granularity),
       to_precomputation_(scheduler_, 1, stage_link_depth),
-      to_distribution_(scheduler_, 1, stage_link_depth) {
+      to_distribution_(scheduler_, 1, stage_link_depth),
+      ranks_(ranks) {
     if (machine.max_cycles > 0) scheduler_.set_limit(Cycle(machine.max_cycles));
     scheduler_.set_watch(&Machine::watch, this);
+    if (ranks) scheduler_.set_meeting(&Machine::meet, this);
     bind_pipeline();
     const bool anything_beyond =
         std::any_of(scene.beyond.begin(), scene.beyond.end(), [](bool b) { return b; });
     if (settings.exterior == ExteriorMode::host && anything_beyond && settings.stage == RunStage::trace) {
+        if (ranks && ranks->rank() != 0) {
+            Exterior::join_remote(array_, environment_, *ranks);
+            return;
+        }
         if (!tracer)
             throw std::invalid_argument("exterior 'host' needs a tracer for what lies outside the cube");
         exterior_ = std::make_unique<Exterior>("exterior", environment_, *tracer);
-        exterior_->join(array_);
+        exterior_->join(array_, ranks);
     }
 }
 
@@ -75,11 +82,14 @@ void Machine::bind_pipeline() {
     to_distribution_.set_name("precomputation.out");
     environment_.stall(to_distribution_, to_distribution_.name());
     to_distribution_.connect_source(precomputation_);
-    to_distribution_.connect_sink(distribution_.row(0));
     precomputation_.out.bind(to_distribution_);
-    distribution_.row(0).in.bind(to_distribution_);
+    const ArrayShare& share = environment_.share;
+    if (share.first == 0) {
+        to_distribution_.connect_sink(distribution_.row(0));
+        distribution_.row(0).in.bind(to_distribution_);
+    }
 
-    for (int y = 0; y < environment_.height(); ++y) {
+    for (int y = share.first; y < share.end; ++y) {
         row_links_.push_back(std::make_unique<Link>(scheduler_, 1, environment_.machine.buffer_depth));
         Link& link = *row_links_.back();
         link.set_name("distribution.row_" + std::to_string(y) + ".east");
@@ -106,15 +116,19 @@ Cycle Machine::livelock_window() const {
 bool Machine::watch(void* self, Cycle now) {
     auto& machine = *static_cast<Machine*>(self);
     Environment& env = machine.environment_;
-    if (machine.interrupt_ && *machine.interrupt_) {
+    // What is decided here must be decided alike by all ranks: from what they have agreed upon.
+    const RankExchange* ranks = machine.ranks_;
+    if (ranks ? ranks->agreed().interrupted != 0 : machine.interrupt_ && *machine.interrupt_) {
         machine.interrupted_ = true;
         return false;
     }
     machine.activity_.observe(now, env.counters);
-    const Cycle idle = now - std::max(env.counters.last_progress, env.phase_start);
+    const Cycle last_progress = ranks ? ranks->agreed().last_progress : env.counters.last_progress;
+    const std::uint64_t destroyed = ranks ? ranks->agreed().rays_destroyed : env.counters.rays_destroyed;
+    const Cycle idle = now - std::max(last_progress, env.phase_start);
     // The window goes through the whole cost table, and this is called in every cycle: its largest part
     // first.
-    if (env.phase == Phase::trace && env.counters.rays_destroyed > 0 && idle > longest_backoffs(env) &&
+    if (env.phase == Phase::trace && destroyed > 0 && idle > longest_backoffs(env) &&
         idle > machine.livelock_window()) {
         // Nothing comes home any more. With no new rays on their way, all that is not locked comes to rest.
         if (!env.draining && env.observer) env.observer->draining(true, now);
@@ -131,10 +145,8 @@ bool Machine::watch(void* self, Cycle now) {
     if (machine.progress_ && ++machine.watch_calls_ % calls_between_reports == 0) {
         constexpr const char* names[] = {"load", "precast", "trace"};
         const std::uint64_t cells = std::uint64_t(env.width()) * std::uint64_t(env.height());
-        machine.progress_(
-            {names[int(env.phase)], now,
-             env.phase == Phase::load ? env.counters.cells_loaded : env.counters.pixels_done, cells,
-             env.counters.load_hops + env.counters.rays.ray_hops + env.counters.rays.return_hops});
+        const RankProgress so_far = ranks ? ranks->agreed() : machine.progress();
+        machine.progress_({names[int(env.phase)], now, so_far.done, cells, so_far.hops});
     }
     return true;
 }
@@ -144,18 +156,20 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     environment_.phase = phase;
     environment_.phase_start = scheduler_.now();
     if (phase == Phase::load) {
-        geometry_.start();
+        if (environment_.share.first == 0) geometry_.start();
     } else {
         if (environment_.observer) environment_.observer->phase_begins(phase, scheduler_.now() + 1);
         array_.begin_phase();
     }
     // No free-running clock: this returns when nobody has anything to do any more.
+    scheduler_.begin();
     sc_core::sc_start();
     scheduler_.sample();
+    totals_ = joined(environment_.counters, raycell::join);
     if (!phase_complete()) judge(result);
     // A phase is over with its last message; what woke after that only found nothing to do.
     const Cycle end = result.verdict == Verdict::completed
-                          ? std::max(environment_.counters.last_progress, environment_.phase_start)
+                          ? std::max(totals_.last_progress, environment_.phase_start)
                           : scheduler_.now();
     const Cycle cycles = end - environment_.phase_start;
     const double seconds = seconds_since(wall);
@@ -180,6 +194,7 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     run_phase(Phase::load, result);
     activity_.finish(scheduler_.now() + 1, environment_.counters);
     result.load_activity = activity_.activity();
+    join_activity(result.load_activity);
     activity_.begin(scheduler_.now() + 1, environment_.counters, true);
     // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
     result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
@@ -206,12 +221,14 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
         if (going()) run_phase(Phase::trace, result);
         activity_.finish(scheduler_.now() + 1, environment_.counters);
         result.activity = activity_.activity();
+        join_activity(result.activity);
     }
     result.in_flight = in_flight();
     check_conservation(result.in_flight, going());
     collect(result);
     if (going() && result.storage.overflowed > 0) result.verdict = Verdict::capacity;
     result.picture = picture_;
+    join_picture(result.picture);
     result.ended = scheduler_.now();
     return result;
 }
@@ -222,17 +239,19 @@ InFlight Machine::in_flight() const {
     there.rays = pools.rays.in_use();
     if (exterior_)
         there.rays += std::uint64_t(exterior_->working());  // those left the pool when it took them
-    there.answers = pools.answers.in_use();
+    there.rays = sum(there.rays);
+    there.answers = sum(pools.answers.in_use());
     there.upstream = geometry_.holds() + std::uint64_t(to_precomputation_.occupancy(0)) +
                      precomputation_.holds() + std::uint64_t(to_distribution_.occupancy(0)) +
                      distribution_.holds();
-    there.loads = pools.loads.in_use() - there.upstream;
+    there.upstream = sum(there.upstream);
+    there.loads = sum(pools.loads.in_use()) - there.upstream;
     return there;
 }
 
 /// What was sent has come home or is still there, however the run ended.
 void Machine::check_conservation(const InFlight& there, bool completed) const {
-    const Counters& c = environment_.counters;
+    const Counters& c = totals_;
     const bool rays = c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed + there.rays;
     const bool answers = c.answers_sent == c.answers_delivered + there.answers;
     const bool loads = c.loads_sent == c.loads_delivered + there.loads;
@@ -251,41 +270,61 @@ void Machine::check_conservation(const InFlight& there, bool completed) const {
 }
 
 void Machine::collect(RunResult& result) const {
-    result.counters = environment_.counters;
+    result.counters = totals_;
     result.geometry = geometry_.statistics();
     result.precomputation = precomputation_.statistics();
-    result.distribution = distribution_.statistics();
+    result.distribution =
+        joined(distribution_.statistics(), [](StageStatistics& a, const StageStatistics& b) {
+            a.items += b.items;
+            a.busy_cycles += b.busy_cycles;
+        });
     if (exterior_) result.exterior = exterior_->statistics();
     const Context& context = environment_.context;
     const VoxelBits each = voxel_bits(context.settings, context.arithmetic.formats(), context.sources.size());
+    std::uint64_t slot_cycles = 0;
     for (const Cell& cell : array_.cells()) {
         result.storage.add(cell.store(), each);
         result.ray_store_peak = std::max(result.ray_store_peak, cell.ray_store().peak());
-        result.counters.slot_cycles += cell.ray_store().waiting_cycles(scheduler_.now());
+        slot_cycles += cell.ray_store().waiting_cycles(scheduler_.now());
     }
+    result.counters.slot_cycles += sum(slot_cycles);
+    result.storage = joined(result.storage, [](StorageCounts& a, const StorageCounts& b) { a.add(b); });
+    result.ray_store_peak = joined(result.ray_store_peak, [](int& a, int b) { a = std::max(a, b); });
     if (result.trace_cycles > 0) {
-        result.ray_store_mean = double(result.counters.slot_cycles) /
-                                (double(result.trace_cycles) * double(array_.cells().size()));
+        result.ray_store_mean =
+            double(result.counters.slot_cycles) /
+            (double(result.trace_cycles) * double(environment_.width()) * double(environment_.height()));
     }
-    result.schedule_hash = array_.schedule_hash();
+    result.schedule_hash = joined_schedule_hash();
     result.ledger = environment_.ledger;
+    join_ledger(result.ledger);
     collect_time_outs(result);
     collect_buffers(result);
 }
 
 /// Peak and mean of one class over the array's links since their last reset.
 RunResult::BufferUse Machine::buffer_use(const char* buffer_class, int index, Cycle cycles) const {
-    RunResult::BufferUse use;
-    use.name = buffer_class;
-    double occupied = 0;
-    double buffers = 0;
+    struct Sums {
+        int peak = 0;
+        std::uint64_t occupied = 0;
+        std::uint64_t buffers = 0;
+    } sums;
     for (const Link& link : array_.links()) {
         const Link::ClassStatistics s = link.statistics(index);
-        use.peak = std::max(use.peak, s.peak);
-        occupied += double(s.occupied_cycles);
-        buffers += s.sent > 0 ? 1 : 0;  // a class that a link never carries has no buffer there
+        sums.peak = std::max(sums.peak, s.peak);
+        sums.occupied += s.occupied_cycles;
+        sums.buffers += s.sent > 0 ? 1 : 0;  // a class that a link never carries has no buffer there
     }
-    if (buffers > 0 && cycles > 0) use.mean = occupied / (buffers * double(cycles));
+    sums = joined(sums, [](Sums& a, const Sums& b) {
+        a.peak = std::max(a.peak, b.peak);
+        a.occupied += b.occupied;
+        a.buffers += b.buffers;
+    });
+    RunResult::BufferUse use;
+    use.name = buffer_class;
+    use.peak = sums.peak;
+    if (sums.buffers > 0 && cycles > 0)
+        use.mean = double(sums.occupied) / (double(sums.buffers) * double(cycles));
     return use;
 }
 

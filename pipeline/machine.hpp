@@ -14,6 +14,7 @@
 #include "pipeline/exterior.hpp"
 #include "pipeline/geometry.hpp"
 #include "pipeline/precomputation.hpp"
+#include "pipeline/rank_exchange.hpp"
 
 namespace raycell {
 
@@ -91,12 +92,16 @@ struct RunProgress {
 class Machine : public sc_core::sc_module {
   public:
     /// `tracer` may be null where nothing is handed to the exterior. With `traffic` what rays meet is drawn
-    /// (model/traffic.hpp). All arguments must outlive the machine.
+    /// (model/traffic.hpp). With `ranks` this is its rank's part of a machine that several processes
+    /// simulate; the scene's polygons and the tracer are needed by rank 0 alone. All arguments must outlive
+    /// the machine.
     Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
             const MachineSettings& machine, const ExteriorTracer* tracer,
-            const SyntheticTraffic* traffic = nullptr, const Granularity& granularity = {});
+            const SyntheticTraffic* traffic = nullptr, const Granularity& granularity = {},
+            RankExchange* ranks = nullptr);
 
-    /// Runs load, precast and trace to a verdict. Call once.
+    /// Runs load, precast and trace to a verdict. Call once. Of several ranks, all have the whole machine's
+    /// result, but only rank 0 the whole picture and ledger; the others none.
     RunResult run(std::function<void(const RunProgress&)> progress = {});
 
     /// While `flag` is not 0 the run ends before its next cycle, with the verdict `interrupted` and what
@@ -122,7 +127,8 @@ class Machine : public sc_core::sc_module {
     /// Cycles without any answer coming home after which postponing is called a livelock.
     Cycle livelock_window() const;
 
-    /// What waits for what as the machine stands now, precast or trace phase; analysed.
+    /// What waits for what as the machine stands now, precast or trace phase; analysed. Of several ranks, all
+    /// must call it, and all have the whole graph.
     WaitGraph wait_graph() const;
 
   private:
@@ -139,6 +145,20 @@ class Machine : public sc_core::sc_module {
     static std::vector<std::string> knot_report(const WaitGraph& graph);
     std::vector<std::string> stuck_report() const;
     static bool watch(void* self, Cycle now);
+
+    // machine_ranks.cpp: what several ranks have to put together
+    static Cycle meet(void* self, Cycle next);
+    RankProgress progress() const;
+    /// Of all ranks: `mine` joined with the others' by `join(T&, const T&)`.
+    template <typename T, typename Join>
+    T joined(T mine, Join join) const;
+    std::uint64_t sum(std::uint64_t mine) const;
+    void put_waits_together(WaitMap& map) const;
+    std::vector<std::string> joined_lines(std::vector<std::vector<std::string>> sections) const;
+    void join_activity(Activity& activity) const;
+    std::uint64_t joined_schedule_hash() const;
+    void join_ledger(Ledger& ledger) const;
+    void join_picture(Picture& picture) const;
     bool kick_finds_work();
     bool buffers_empty() const;
 
@@ -159,6 +179,19 @@ class Machine : public sc_core::sc_module {
     Cycle drain_start_ = never;
     const volatile std::sig_atomic_t* interrupt_ = nullptr;
     bool interrupted_ = false;
+    RankExchange* ranks_ = nullptr;  ///< null: the whole machine is here
+    Counters totals_;                ///< of the whole machine, when a phase has ended
 };
+
+template <typename T, typename Join>
+T Machine::joined(T mine, Join join) const {
+    if (!ranks_) return mine;
+    ByteWriter bytes;
+    bytes.put(mine);
+    const std::vector<Bytes> all = ranks_->gather_for_all(bytes.take());
+    T sum = ByteReader(all.front()).get<T>();
+    for (std::size_t rank = 1; rank < all.size(); ++rank) join(sum, ByteReader(all[rank]).get<T>());
+    return sum;
+}
 
 }  // namespace raycell

@@ -8,7 +8,7 @@
 namespace raycell {
 
 bool Machine::phase_complete() const {
-    const Counters& c = environment_.counters;
+    const Counters& c = totals_;
     const std::uint64_t cells = std::uint64_t(environment_.width()) * std::uint64_t(environment_.height());
     switch (environment_.phase) {
         case Phase::load:
@@ -16,8 +16,8 @@ bool Machine::phase_complete() const {
         case Phase::precast:
             return c.rays_sent == c.rays_answered + c.rays_silent + c.rays_destroyed &&
                    c.answers_sent == c.answers_delivered &&
-                   std::none_of(array_.cells().begin(), array_.cells().end(),
-                                [](const Cell& cell) { return cell.busy(); });
+                   sum(std::any_of(array_.cells().begin(), array_.cells().end(),
+                                   [](const Cell& cell) { return cell.busy(); })) == 0;
         case Phase::trace:
             return c.pixels_done == cells;
     }
@@ -31,18 +31,19 @@ void Machine::judge(RunResult& result) {
     }
     if (environment_.phase != Phase::load) result.waits = wait_graph();
     const bool locked = result.waits.deadlocked();
-    if (scheduler_.limit_reached()) {
+    if (sum(scheduler_.limit_reached()) > 0) {
         // What is locked stays so, whatever the limit; anything else may only be congested.
         result.verdict = locked ? Verdict::deadlock : Verdict::cycle_limit;
     } else if (environment_.draining) {
         const bool at_rest = !scheduler_.stopped();
-        if (at_rest && !buffers_empty() && !locked) {
+        if (sum(at_rest && !buffers_empty()) > 0 && !locked) {
             throw std::logic_error("internal error: what stands still waits for nothing");
         }
         result.verdict = locked ? Verdict::deadlock : Verdict::livelock;
     } else {
         result.verdict = Verdict::deadlock;
-        if (kick_finds_work()) throw std::logic_error("internal error: a cell that could move was not woken");
+        if (sum(kick_finds_work()) > 0)
+            throw std::logic_error("internal error: a cell that could move was not woken");
         if (environment_.phase != Phase::load && !locked) {
             throw std::logic_error("internal error: a run stands still without a knot");
         }
@@ -64,10 +65,14 @@ void Machine::judge(RunResult& result) {
 
 WaitGraph Machine::wait_graph() const {
     WaitMap map;
-    for (const Cell& cell : array_.cells()) cell.add_places(map);
-    if (exterior_) exterior_->add_places(map);
-    for (const Cell& cell : array_.cells()) cell.add_waits(map);
-    if (exterior_) exterior_->add_waits(map);
+    if (ranks_) {
+        put_waits_together(map);
+    } else {
+        for (const Cell& cell : array_.cells()) cell.add_places(map);
+        if (exterior_) exterior_->add_places(map);
+        for (const Cell& cell : array_.cells()) cell.add_waits(map);
+        if (exterior_) exterior_->add_waits(map);
+    }
     map.graph().analyse();
     return std::move(map.graph());
 }
@@ -114,12 +119,13 @@ bool Machine::kick_finds_work() {
 }
 
 std::vector<std::string> Machine::stuck_report() const {
-    std::vector<std::string> lines;
+    std::vector<std::vector<std::string>> sections(4);  // cells, then links: of each all ranks' together
     for (const Cell& cell : array_.cells()) {
         auto more = cell.describe_blocked();
-        lines.insert(lines.end(), more.begin(), more.end());
+        sections[0].insert(sections[0].end(), more.begin(), more.end());
     }
-    const auto add_links = [&lines](const std::vector<std::unique_ptr<Link>>& links) {
+    const auto add_links = [](std::vector<std::string>& lines,
+                              const std::vector<std::unique_ptr<Link>>& links) {
         for (const auto& link : links) {
             for (int index = 0; index < link->classes(); ++index) {
                 if (link->occupancy(index) == 0) continue;
@@ -129,9 +135,10 @@ std::vector<std::string> Machine::stuck_report() const {
             }
         }
     };
-    add_links(distribution_.links());
-    add_links(row_links_);
-    if (exterior_) add_links(exterior_->links());
+    add_links(sections[1], distribution_.links());
+    add_links(sections[2], row_links_);
+    if (exterior_) add_links(sections[3], exterior_->links());
+    std::vector<std::string> lines = joined_lines(std::move(sections));
     const auto age = [](const std::string& line) {
         const auto at = line.find("since cycle ");
         return at == std::string::npos ? 0ULL : std::stoull(line.substr(at + 12));
@@ -160,7 +167,7 @@ void Machine::collect_time_outs(RunResult& result) const {
         return std::size_t(y) * std::size_t(environment_.width()) + std::size_t(x);
     };
     // 2: holds a node of a knot; 1: one that waits for a knot.
-    std::vector<int> locked(array_.cells().size(), 0);
+    std::vector<int> locked(std::size_t(environment_.width()) * std::size_t(environment_.height()), 0);
     for (const WaitGraph::Node& node : result.waits.nodes()) {
         int& state = locked[index(node.x, node.y)];
         if (node.state == WaitGraph::State::knot) state = 2;
@@ -168,28 +175,42 @@ void Machine::collect_time_outs(RunResult& result) const {
     }
     const auto seen = [&](WaitGraph::Index i) {
         const WaitGraph::Node& node = result.waits.nodes()[i];
-        return array_.cell(node.x, node.y).time_out().since() != never;
+        return environment_.share.contains(node.y) && array_.cell(node.x, node.y).time_out().since() != never;
     };
-    const auto& knots = result.waits.knots();
-    const auto missed = std::count_if(knots.begin(), knots.end(), [&](const auto& knot) {
-        return std::none_of(knot.begin(), knot.end(), seen);
-    });
+    std::uint64_t missed = 0;
+    for (const auto& knot : result.waits.knots()) {
+        missed += sum(std::uint64_t(std::count_if(knot.begin(), knot.end(), seen))) == 0;
+    }
+    const Cell& first_cell = array_.cells().front();
+    const std::size_t offset = index(first_cell.x(), first_cell.y());
     for (int log = TimeOut::least_log; log <= TimeOut::most_log; ++log) {
-        TimeOutResult sum;
-        sum.cycles = Cycle(1) << log;
-        // Where nothing moves any more, a wait that goes on lasts for ever: longer than any time-out.
-        sum.missed_knots = std::uint64_t(missed);
-        Cycle first = never;
-        for (std::size_t i = 0; i < locked.size(); ++i) {
+        struct Sums {
+            TimeOutResult all;
+            Cycle first = never;
+        } mine;
+        mine.all.cycles = Cycle(1) << log;
+        for (std::size_t i = 0; i < array_.cells().size(); ++i) {
             const TimeOut& time_out = array_.cells()[i].time_out();
-            (locked[i] ? sum.early_alarms : sum.false_alarms) += time_out.ended(log);
-            sum.knot_cells += locked[i] == 2;
-            if (!locked[i] || time_out.since() == never) continue;
-            ++(locked[i] == 2 ? sum.knot_alarms : sum.tail_alarms);
-            if (locked[i] == 2) first = std::min(first, time_out.since() + sum.cycles);
+            const int state = locked[offset + i];
+            (state ? mine.all.early_alarms : mine.all.false_alarms) += time_out.ended(log);
+            mine.all.knot_cells += state == 2;
+            if (!state || time_out.since() == never) continue;
+            ++(state == 2 ? mine.all.knot_alarms : mine.all.tail_alarms);
+            if (state == 2) mine.first = std::min(mine.first, time_out.since() + mine.all.cycles);
         }
-        if (first != never) sum.first_alarm_delay = std::int64_t(first) - std::int64_t(result.knot_formed);
-        result.time_outs.push_back(sum);
+        mine = joined(mine, [](Sums& a, const Sums& b) {
+            a.all.false_alarms += b.all.false_alarms;
+            a.all.early_alarms += b.all.early_alarms;
+            a.all.knot_cells += b.all.knot_cells;
+            a.all.knot_alarms += b.all.knot_alarms;
+            a.all.tail_alarms += b.all.tail_alarms;
+            a.first = std::min(a.first, b.first);
+        });
+        // Where nothing moves any more, a wait that goes on lasts for ever: longer than any time-out.
+        mine.all.missed_knots = missed;
+        if (mine.first != never)
+            mine.all.first_alarm_delay = std::int64_t(mine.first) - std::int64_t(result.knot_formed);
+        result.time_outs.push_back(mine.all);
     }
 }
 

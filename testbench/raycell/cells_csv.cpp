@@ -85,6 +85,7 @@ std::string cells_csv(Machine& machine, const RunResult& result) {
         text += std::string(",stall_") + stall_names[cause];
     }
     text += '\n';
+    if (machine.environment().share.first > 0) text.clear();  // rank 0 has it
     const Cycle now = machine.environment().scheduler.now();
     const Cycle cycles = result.precast_cycles + result.trace_cycles;
     const std::vector<Inputs> inputs = inputs_of(machine);

@@ -1,10 +1,11 @@
 #include "testbench/raycell/entry.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <new>
-#include <stdexcept>
+#include <streambuf>
 
 #include "scenes/diagnostics.hpp"
 #include "testbench/raycell/commands.hpp"
@@ -18,7 +19,34 @@ const bool banner_off = [] {
     return true;
 }();
 
+void (*failure_hook)(int) = nullptr;
+
+int number_in_environment(std::initializer_list<const char*> names, int otherwise) {
+    for (const char* name : names) {
+        if (const char* text = std::getenv(name)) return std::atoi(text);
+    }
+    return otherwise;
+}
+
+/// Takes what is printed and drops it.
+class Nowhere : public std::streambuf {
+    int overflow(int c) override { return traits_type::not_eof(c); }
+};
+
 }  // namespace
+
+LaunchedRanks launched_ranks() {
+    return {number_in_environment({"OMPI_COMM_WORLD_RANK", "PMI_RANK"}, 0),
+            std::max(1, number_in_environment({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1)),
+            std::max(1, number_in_environment({"OMPI_COMM_WORLD_LOCAL_SIZE"}, 1))};
+}
+
+void refuse_ranks(const std::string& what) {
+    if (launched_ranks().count > 1)
+        throw RanksRefused(what + " can't be run by several ranks; expected one process, without mpirun");
+}
+
+void set_failure_hook(void (*hook)(int)) { failure_hook = hook; }
 
 int parse_and_run(CLI::App& app, std::vector<std::string> words, const std::function<int()>& run) {
     std::reverse(words.begin(), words.end());  // CLI11 takes a vector from its end
@@ -27,6 +55,7 @@ int parse_and_run(CLI::App& app, std::vector<std::string> words, const std::func
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? exit_done : exit_usage;
     }
+    refuse_ranks("this program");
     const int code = run();
     std::cout.flush();
     if (!std::cout) throw std::runtime_error("standard output can't be written");
@@ -35,16 +64,34 @@ int parse_and_run(CLI::App& app, std::vector<std::string> words, const std::func
 
 int run_guarded(const std::string& name, const std::string& smaller, const std::function<int()>& run) {
     (void)banner_off;
+    static Nowhere nowhere;
+    const int rank = launched_ranks().rank;
+    if (rank > 0) {
+        std::cout.rdbuf(&nowhere);
+        std::cerr.rdbuf(&nowhere);
+    }
+    int code = exit_usage;
+    std::string message;
     try {
         return run();
     } catch (const InputError& error) {
-        std::cerr << error.what() << '\n';
+        message = error.what();
     } catch (const std::bad_alloc&) {
-        std::cerr << name << ": out of memory; expected " << smaller << '\n';
+        message = name + ": out of memory; expected " + smaller;
+    } catch (const RanksRefused& error) {
+        message = name + ": " + error.what();
+        code = exit_refused;
+    } catch (const OtherRankFailed&) {
     } catch (const std::exception& error) {
-        std::cerr << name << ": " << error.what() << '\n';
+        message = name + ": " + error.what();
     }
-    return exit_usage;
+    if (rank == 0) {
+        std::cerr << message << std::endl;
+    } else if (failure_hook && !message.empty()) {  // without a hook, every rank has the same to say
+        std::fprintf(stderr, "rank %d: %s\n", rank, message.c_str());
+    }
+    if (failure_hook) failure_hook(code);
+    return code;
 }
 
 }  // namespace raycell

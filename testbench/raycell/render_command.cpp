@@ -15,6 +15,7 @@
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
 #include "testbench/raycell/deadlock_dump.hpp"
+#include "testbench/raycell/entry.hpp"
 #include "testbench/raycell/golden_run.hpp"
 #include "testbench/raycell/interruptible.hpp"
 #include "testbench/raycell/knot_report.hpp"
@@ -22,6 +23,7 @@
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/picture_file.hpp"
 #include "testbench/raycell/probe_run.hpp"
+#include "testbench/raycell/rank_run.hpp"
 #include "testbench/raycell/ray_watch.hpp"
 #include "testbench/raycell/report_json.hpp"
 #include "testbench/raycell/scene_input.hpp"
@@ -57,17 +59,19 @@ struct Run {
     std::unique_ptr<ProbeRun> probes;   ///< null: none
     std::unique_ptr<GoldenRun> golden;  ///< null: none
     DeadlockedCells deadlocked;         ///< with --vcd-on-deadlock
+    Json ranks;                         ///< empty: one process
 };
 
 Run run_timed(const RenderOptions& options, const std::string& configuration, const CellScene& scene,
-              const ExteriorTracer* tracer) {
+              const ExteriorTracer* tracer, RankRun* ranks) {
     Run run;
     const auto start = Clock::now();
     const std::uint64_t before = memory_bytes();
     // Never destroyed: SystemC takes ports down in quadratic time (minutes for 256x256 cells), and a process
     // has only one elaboration anyway.
-    static Machine* const kept = new Machine("machine", scene, options.picture, options.machine, tracer,
-                                             nullptr, granularity_of(options));
+    static Machine* const kept =
+        new Machine("machine", scene, options.picture, options.machine, tracer, nullptr,
+                    granularity_of(options), ranks ? &ranks->exchange(scene, options.picture) : nullptr);
     Machine& machine = *kept;
     const std::uint64_t cells = std::uint64_t(options.picture.width) * std::uint64_t(options.picture.height);
     const std::uint64_t after = memory_bytes();
@@ -82,7 +86,7 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     }
     if (!observers.empty()) machine.environment().observer = &observers;
     if (!options.probes.cells.empty()) run.probes = std::make_unique<ProbeRun>(options, machine);
-    const bool progress = shows_progress(options) && !watch;
+    const bool progress = shows_progress(options) && !watch && (!ranks || ranks->first());
     const Interruptible interruptible(machine);
     run.result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
@@ -94,6 +98,10 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
         run.deadlocked = deadlocked_cells(run.result, machine);
     }
     run.cells_csv = cells_csv(machine, run.result);
+    if (ranks) {
+        run.cells_csv = ranks->gather_text(run.cells_csv);
+        run.ranks = ranks->report(machine, peak_memory_bytes());
+    }
     return run;
 }
 
@@ -174,13 +182,19 @@ int run(const RenderOptions& options, const OptionTable& table) {
     watch_of(options, std::cout);  // refuses what can't be watched before anything is done
     check_probes(options);
     check_golden(options);
+    check_ranks(options);
     const auto start = Clock::now();
-    const CellScene scene = read_and_place(options);
-    for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
-        std::cerr << options.scene << ": warning: " << warning << '\n';
-    }
-    const bool exterior =
-        options.picture.exterior == ExteriorMode::host && options.picture.stage == RunStage::trace;
+    const auto read = [&] {
+        CellScene scene = read_and_place(options);
+        for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
+            std::cerr << options.scene << ": warning: " << warning << '\n';
+        }
+        return scene;
+    };
+    const std::unique_ptr<RankRun> ranks = launched_ranks().count > 1 ? std::make_unique<RankRun>() : nullptr;
+    const CellScene scene = ranks ? ranks->share_scene(read) : read();
+    const bool exterior = options.picture.exterior == ExteriorMode::host &&
+                          options.picture.stage == RunStage::trace && (!ranks || ranks->first());
     std::unique_ptr<TruthRenderer> whole;
     std::unique_ptr<ClassicalExterior> tracer;
     if (exterior) {
@@ -190,9 +204,14 @@ int run(const RenderOptions& options, const OptionTable& table) {
     }
     const double wall_placing = seconds_since(start);
     const Json config = table.values();
-    Run done = options.engine == Engine::timed ? run_timed(options, to_toml(config), scene, tracer.get())
-                                               : run_untimed(options, scene, tracer.get());
+    Run done = options.engine == Engine::timed
+                   ? run_timed(options, to_toml(config), scene, tracer.get(), ranks.get())
+                   : run_untimed(options, scene, tracer.get());
     done.wall_build += wall_placing;
+    if (ranks && !ranks->first()) {
+        ranks->finish();
+        return exit_done;
+    }
 
     OutputSet outputs(options.prefix);
     const RunResult& result = done.result;
@@ -200,6 +219,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
     if (options.truth) json["accuracy"] = render_truth(options, scene, result.picture, outputs);
     json["config"] = config;
     json["model"] = model_report(done);
+    if (!done.ranks.empty()) json["ranks"] = done.ranks;
     outputs.write(".exr", [&](const std::string& path) { write_exr(result.picture, path); });
     outputs.write(".png", [&](const std::string& path) { write_png(result.picture, path); });
     outputs.write(".cells.csv", [&](const std::string& path) { write_text(path, done.cells_csv); });
@@ -218,6 +238,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
     outputs.keep();
     explain(result);
     if (!options.quiet) summarise(options, json);
+    if (ranks) ranks->finish();
     return exit_code(result.verdict);
 }
 

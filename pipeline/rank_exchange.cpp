@@ -1,0 +1,117 @@
+#include "pipeline/rank_exchange.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <stdexcept>
+
+namespace raycell {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+void RankProgress::join(const RankProgress& other) {
+    next = std::min(next, other.next);
+    last_progress = std::max(last_progress, other.last_progress);
+    rays_destroyed += other.rays_destroyed;
+    done += other.done;
+    hops += other.hops;
+    interrupted = std::max(interrupted, other.interrupted);
+}
+
+RankRows rows_of_rank(int rank, int count, int height) {
+    const auto cut = [&](int i) { return int(std::int64_t(height) * i / count); };
+    return {cut(rank), cut(rank + 1)};
+}
+
+RankExchange::RankExchange(RankTransport& transport, int height, bool with_exterior)
+    : transport_(transport), height_(height) {
+    if (count() > height) {
+        throw std::invalid_argument(std::to_string(count()) + " ranks for " + std::to_string(height) +
+                                    " rows of cells; expected a row for each at least");
+    }
+    const RankRows rows = rows_of_rank(rank(), count(), height);
+    share_.first = rows.first;
+    share_.end = rows.end;
+    for (int other = 0; other < count(); ++other) {
+        const bool neighbour = other == rank() - 1 || other == rank() + 1;
+        const bool border = with_exterior && other != rank() && (other == 0 || rank() == 0);
+        if (!neighbour && !border) continue;
+        peers_.push_back({other, std::make_unique<SplitLinks>()});
+        peers_.back().links->set_prefix(sizeof(RankProgress));
+    }
+    share_.above = links_to(rank() - 1);
+    share_.below = links_to(rank() + 1);
+    for (const Peer& peer : peers_) {
+        parcels_.emplace_back();
+        parcels_.back().rank = peer.rank;
+    }
+    short_out_.resize(sizeof(RankProgress));
+}
+
+int RankExchange::owner(int y) const {
+    int low = 0;
+    while (y >= rows_of_rank(low, count(), height_).end) ++low;
+    return low;
+}
+
+SplitLinks* RankExchange::links_to(int other) {
+    const auto found =
+        std::find_if(peers_.begin(), peers_.end(), [&](const Peer& peer) { return peer.rank == other; });
+    return found == peers_.end() ? nullptr : found->links.get();
+}
+
+/// Swaps progress with all peers and, `with_links`, what their halves have to tell.
+void RankExchange::carry(const RankProgress& mine, bool with_links) {
+    for (std::size_t i = 0; i < peers_.size(); ++i) {
+        Bytes& out = with_links ? peers_[i].links->out() : short_out_;
+        std::memcpy(out.data(), &mine, sizeof mine);
+        parcels_[i].out = &out;
+        statistics_.bytes += out.size();
+    }
+    const auto start = Clock::now();
+    transport_.swap(parcels_);
+    statistics_.waited += seconds_since(start);
+}
+
+RankProgress RankExchange::meet(RankProgress mine, Environment& environment) {
+    const Scheduler& scheduler = environment.scheduler;
+    ++statistics_.meetings;
+    mine.next = scheduler.next();
+    carry(mine, true);
+    const auto theirs = [&] {
+        RankProgress progress;
+        std::memcpy(static_cast<void*>(&progress), parcels_.front().in.data(), sizeof progress);
+        return progress;
+    };
+    agreed_ = mine;
+    const bool two = count() == 2;
+    if (two) agreed_.join(theirs());
+    for (std::size_t i = 0; i < peers_.size(); ++i) {
+        peers_[i].links->clear(environment.pools);
+        peers_[i].links->deliver(parcels_[i].in.data() + sizeof(RankProgress),
+                                 parcels_[i].size - sizeof(RankProgress), environment.pools);
+    }
+    // Nothing that came can wake anybody before the next cycle: if that one is run anyway, all is known.
+    if (two && agreed_.next == scheduler.now() + 1) return agreed_;
+    mine.next = scheduler.next();
+    ++statistics_.second_rounds;
+    if (two) {
+        carry(mine, false);
+        agreed_ = mine;
+        agreed_.join(theirs());
+        return agreed_;
+    }
+    const auto start = Clock::now();
+    agreed_ = transport_.agree(mine);
+    statistics_.waited += seconds_since(start);
+    return agreed_;
+}
+
+}  // namespace raycell

@@ -1,0 +1,107 @@
+// One machine simulated by several processes, the ranks: each has a block of the array's rows, and they go
+// through the cycles together. How bytes get from one to the other is not known here.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "cells/bytes.hpp"
+#include "cells/environment.hpp"
+#include "cells/split_link.hpp"
+
+namespace raycell {
+
+/// What the ranks must know of each other after every cycle. Of all of them: the smallest, the largest, sums.
+struct RankProgress {
+    Cycle next = never;       ///< in which anybody is to be woken
+    Cycle last_progress = 0;  ///< as in Counters
+    std::uint64_t rays_destroyed = 0;
+    std::uint64_t done = 0;  ///< cells loaded or pixels complete
+    std::uint64_t hops = 0;
+    std::uint64_t interrupted = 0;
+
+    void join(const RankProgress& other);
+};
+
+/// Carries bytes between ranks. All ranks call the same members in the same order; a rank that fails ends
+/// all.
+class RankTransport {
+  public:
+    virtual ~RankTransport() = default;
+    virtual int rank() const = 0;
+    virtual int count() const = 0;
+    struct Parcel {
+        int rank = 0;  ///< the other
+        const Bytes* out = nullptr;
+        Bytes in;              ///< as large as it must be or larger
+        std::size_t size = 0;  ///< bytes of `in` that have come
+    };
+    /// Hands each parcel's `out` to its rank and takes what that one has for this one.
+    virtual void swap(std::vector<Parcel>& parcels) = 0;
+    /// Joins the progress of all ranks.
+    virtual RankProgress agree(const RankProgress& mine) = 0;
+    /// What each rank has, in the order of ranks: for all of them, or for rank 0 alone (the others get
+    /// nothing).
+    virtual std::vector<Bytes> gather_for_all(const Bytes& mine) = 0;
+    virtual std::vector<Bytes> gather(const Bytes& mine) = 0;
+};
+
+/// The rows of rank `rank` of `count`, as even as they can be: [first, end).
+struct RankRows {
+    int first;
+    int end;
+};
+RankRows rows_of_rank(int rank, int count, int height);
+
+/// A rank's view of the others: links to them, meetings at the end of each cycle, sums over all.
+class RankExchange {
+  public:
+    /// For an array of `height` rows, not fewer than ranks. `with_exterior`: the border of every rank's rows
+    /// is joined to the exterior processors, which are rank 0's. Throws std::invalid_argument for too few
+    /// rows.
+    RankExchange(RankTransport& transport, int height, bool with_exterior);
+
+    int rank() const { return transport_.rank(); }
+    int count() const { return transport_.count(); }
+    const ArrayShare& share() const { return share_; }
+    /// Who has row y.
+    int owner(int y) const;
+    /// The links that are shared with another rank; null where there is nothing to share.
+    SplitLinks* links_to(int other);
+
+    /// The end of a cycle. Everything sent and read in it gets to its other half; clients are woken. Then,
+    /// with `mine` but for its `next`, which is the scheduler's, all ranks agree.
+    RankProgress meet(RankProgress mine, Environment& environment);
+    /// What the last meeting agreed upon.
+    const RankProgress& agreed() const { return agreed_; }
+
+    std::vector<Bytes> gather_for_all(const Bytes& mine) { return transport_.gather_for_all(mine); }
+    std::vector<Bytes> gather(const Bytes& mine) { return transport_.gather(mine); }
+
+    /// Of the meetings so far.
+    struct Statistics {
+        std::uint64_t meetings = 0;
+        std::uint64_t second_rounds = 0;  ///< that the first message alone did not settle
+        std::uint64_t bytes = 0;          ///< sent by this rank, without what the transport adds
+        double waited = 0;                ///< seconds in the transport: sending, and waiting for the slowest
+    };
+    const Statistics& statistics() const { return statistics_; }
+
+  private:
+    struct Peer {
+        int rank;
+        std::unique_ptr<SplitLinks> links;
+    };
+    void carry(const RankProgress& mine, bool with_links);
+
+    RankTransport& transport_;
+    int height_;
+    ArrayShare share_;
+    std::vector<Peer> peers_;
+    std::vector<RankTransport::Parcel> parcels_;
+    Bytes short_out_;
+    RankProgress agreed_;
+    Statistics statistics_;
+};
+
+}  // namespace raycell

@@ -1,0 +1,45 @@
+// render on several ranks: what is refused, who reads the scene, how a failure ends all, what is reported.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/machine.hpp"
+#include "testbench/raycell/options.hpp"
+
+namespace raycell {
+
+class RankSession;
+
+/// Throws RanksRefused for what only one process can do.
+void check_ranks(const RenderOptions& options);
+
+/// This process among those that mpirun started. From its construction on, an error that is not told by
+/// share_scene() ends all ranks.
+class RankRun {
+  public:
+    /// Joins the others. Throws RanksRefused in a program without MPI.
+    RankRun();
+    ~RankRun();
+    RankRun(const RankRun&) = delete;
+    RankRun& operator=(const RankRun&) = delete;
+
+    bool first() const;
+    /// Rank 0 reads the scene; the others get all of it but its polygons. What `read` throws ends all ranks
+    /// with its message, said once.
+    CellScene share_scene(const std::function<CellScene()>& read);
+    /// For the machine; once.
+    RankExchange& exchange(const CellScene& scene, const PictureSettings& settings);
+    /// Rank 0 alone gets all ranks' text, in the order of ranks.
+    std::string gather_text(const std::string& mine);
+    /// `ranks` of the report, on rank 0: rows, hops, bytes and seconds of each. `machine` has run.
+    nlohmann::ordered_json report(Machine& machine, std::uint64_t memory_bytes);
+    /// All is written: lets the others go.
+    void finish();
+
+  private:
+    std::unique_ptr<RankSession> session_;
+    std::unique_ptr<RankExchange> exchange_;
+};
+
+}  // namespace raycell
