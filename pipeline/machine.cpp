@@ -227,8 +227,7 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     check_conservation(result.in_flight, going());
     collect(result);
     if (going() && result.storage.overflowed > 0) result.verdict = Verdict::capacity;
-    result.picture = picture_;
-    join_picture(result.picture);
+    result.picture = ranks_ ? joined_picture() : picture_;
     result.ended = scheduler_.now();
     return result;
 }

@@ -84,8 +84,7 @@ void Machine::join_ledger(Ledger& ledger) const {
 
 /// Of its own rows a rank has what came home. Hops are counted, and first hits recorded, wherever they
 /// happen: by any rank for any pixel, a first hit by one alone.
-void Machine::join_picture(Picture& picture) const {
-    if (!ranks_) return;
+Picture Machine::joined_picture() const {
     struct Abroad {
         std::uint64_t pixel;
         double depth;
@@ -110,7 +109,7 @@ void Machine::join_picture(Picture& picture) const {
         std::vector<Pixel>(mine.begin() + std::ptrdiff_t(first), mine.begin() + std::ptrdiff_t(end)));
     bytes.put_all(abroad);
     const std::vector<Bytes> all = ranks_->gather(bytes.take());
-    picture = all.empty() ? Picture() : Picture(picture_.width, picture_.height);
+    Picture picture = all.empty() ? Picture() : Picture(picture_.width, picture_.height);
     std::vector<std::vector<Abroad>> others;
     for (const Bytes& theirs : all) {
         ByteReader reader(theirs);
@@ -130,6 +129,7 @@ void Machine::join_picture(Picture& picture) const {
             pixel.polygon = a.polygon;
         }
     }
+    return picture;
 }
 
 /// Places in the order in which one rank alone would have them, so that all numbers are the same; then each

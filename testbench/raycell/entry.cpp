@@ -91,7 +91,7 @@ int run_guarded(const std::string& name, const std::string& smaller, const std::
         std::fprintf(stderr, "rank %d: %s\n", rank, message.c_str());
     }
     if (failure_hook) failure_hook(code);
-    return code;
+    return rank == 0 ? code : exit_done;  // mpirun ends rank 0, message or not, once another rank fails
 }
 
 }  // namespace raycell

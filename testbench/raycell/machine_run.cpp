@@ -8,6 +8,7 @@
 
 #include "testbench/raycell/cell_ranges.hpp"
 #include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/entry.hpp"
 
 namespace raycell {
 namespace {
@@ -25,14 +26,18 @@ double available_bytes() {
 }
 
 /// What grows with the array before anything is loaded: cells with their links, and the picture, which the
-/// result has once more.
+/// result has once more. Of several ranks, what all on this machine need: each has a picture beside its
+/// cells, and rank 0 puts them together.
 double needed_bytes(const RenderOptions& options) {
     constexpr double untimed_cell = 200;
     const double cells = double(options.picture.width) * options.picture.height;
     if (options.engine == Engine::untimed) return cells * (untimed_cell + sizeof(Pixel));
-    return cells * 2 * sizeof(Pixel) + Array::bytes(granularity_of(options), options.picture.width,
-                                                    options.picture.height,
-                                                    buffer_classes(options.machine.networks));
+    const LaunchedRanks ranks = launched_ranks();
+    const double pictures = ranks.count == 1 ? 2 : ranks.on_this_machine + 3;
+    const double share = double(ranks.on_this_machine) / ranks.count;
+    return cells * pictures * sizeof(Pixel) +
+           share * Array::bytes(granularity_of(options), options.picture.width, options.picture.height,
+                                buffer_classes(options.machine.networks));
 }
 
 std::string gigabytes(double bytes) {

@@ -176,15 +176,15 @@ void summarise(const RenderOptions& options, const Json& json) {
 }
 
 int run(const RenderOptions& options, const OptionTable& table) {
-    check_output(options.prefix);
     check_granularity(options);
-    check_memory(options);
     watch_of(options, std::cout);  // refuses what can't be watched before anything is done
     check_probes(options);
     check_golden(options);
     check_ranks(options);
     const auto start = Clock::now();
     const auto read = [&] {
+        check_output(options.prefix);
+        check_memory(options);
         CellScene scene = read_and_place(options);
         for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
             std::cerr << options.scene << ": warning: " << warning << '\n';

@@ -1,0 +1,255 @@
+// One machine simulated by several processes: the same run to the last bit, and an end that is the same for
+// all.
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "../system/program.hpp"
+
+namespace raycell::system_test {
+namespace {
+
+constexpr const char* mpirun = "/usr/bin/mpirun";
+
+#define SKIP_WITHOUT_MPIRUN() \
+    if (!fs::exists(mpirun)) GTEST_SKIP() << mpirun << " is missing: several ranks can't be tried"
+#define SKIP_WITHOUT_MPI() \
+    SKIP_WITHOUT_MPIRUN(); \
+    if (!RAYCELL_HAS_MPI) GTEST_SKIP() << "the program is built without MPI"
+
+/// The words of mpirun for `ranks` processes of raycell; it refuses to be root's, and more ranks than cores,
+/// unless it is told.
+Words by_ranks(int ranks, const Words& words) {
+    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+    return joined({"-q", "--oversubscribe", "-np", std::to_string(ranks), RAYCELL_PROGRAM}, words);
+}
+
+Words render(const fs::path& scene, const std::string& name, const Words& more) {
+    return joined({"render", scene.string(), "--quiet", "-o", "results/" + name}, more);
+}
+
+/// A report without what may differ: names, times, memory, and who did what.
+Json comparable(const Workshop& workshop, const std::string& name) {
+    Json json = Json::parse(read_text(workshop.result(name + ".json")));
+    json.erase("model");
+    json.erase("ranks");
+    json.at("config").erase("output");
+    return json;
+}
+
+/// Runs a scene by one process and by these numbers of ranks, and expects the same of all, files included.
+void expect_same(const fs::path& scene, const Words& words, int exit_code = 0,
+                 const std::vector<int>& counts = {2, 3}) {
+    const Workshop workshop;
+    const Finished alone = workshop.run(render(scene, "1", words));
+    ASSERT_EQ(alone.exit_code, exit_code) << alone.err;
+    const Json expected = comparable(workshop, "1");
+    for (const int ranks : counts) {
+        const std::string name = std::to_string(ranks);
+        SCOPED_TRACE(name + " ranks");
+        const Finished finished = workshop.run_program(mpirun, by_ranks(ranks, render(scene, name, words)));
+        ASSERT_EQ(finished.exit_code, exit_code) << finished.err;
+        const Json json = comparable(workshop, name);
+        for (const auto& [key, value] : expected.items()) EXPECT_EQ(json.value(key, Json()), value) << key;
+        EXPECT_EQ(json.size(), expected.size());
+        for (const std::string file :
+             {".exr", ".png", ".cells.csv", ".ledger.csv", ".waits.json", ".knot.svg"}) {
+            EXPECT_EQ(fs::exists(workshop.result(name + file)), fs::exists(workshop.result("1" + file)))
+                << file;
+            EXPECT_TRUE(read_text(workshop.result(name + file)) == read_text(workshop.result("1" + file)))
+                << file << " differs";
+        }
+        const Json each = Json::parse(read_text(workshop.result(name + ".json"))).at("ranks").at("each");
+        ASSERT_EQ(each.size(), std::size_t(ranks));
+        std::uint64_t hops = 0;
+        for (const Json& rank : each) {
+            EXPECT_GT(rank.at("hops").get<std::uint64_t>(), 0u) << "a rank that does nothing proves nothing";
+            hops += rank.at("hops").get<std::uint64_t>();
+        }
+        const Json& all = expected.at("hops");
+        EXPECT_EQ(hops, all.at("load").get<std::uint64_t>() + all.at("ray").get<std::uint64_t>() +
+                            all.at("return").get<std::uint64_t>());
+    }
+}
+
+TEST(Ranks, MakeTheSameRunWithTheExterior) {
+    SKIP_WITHOUT_MPI();
+    expect_same(own_scene("still_life.nff"), {"--cells", "32x32"});
+}
+
+TEST(Ranks, MakeTheSameRunOfAPublicScene) {
+    SKIP_WITHOUT_MPI();
+    SKIP_WITHOUT_SHARED_SCENES();
+    expect_same(shared_scenes() / "spd" / "teapot-s2.nff", {"--cells", "48x48", "--exterior", "none"});
+}
+
+TEST(Ranks, MakeTheSameRunWithMemoShadowsAndStalls) {
+    SKIP_WITHOUT_MPI();
+    expect_same(own_scene("cornell.nff"), {"--cells", "31x23", "--shadows", "memo", "--stall", "0.3",
+                                           "--buffer", "2", "--slots", "free", "--ray-store", "6"});
+}
+
+TEST(Ranks, MakeTheSameRunWithPrecastShadowsOnOtherNetworks) {
+    SKIP_WITHOUT_MPI();
+    expect_same(own_scene("cornell.nff"), {"--cells", "24x24", "--shadows", "precast", "--networks",
+                                           "quadrant", "--arithmetic", "exact", "--granularity", "cell"});
+}
+
+TEST(Ranks, MakeTheSameRunWhenRaysArePostponed) {
+    SKIP_WITHOUT_MPI();
+    const Words words = {"--cells", "24x24", "--ray-store", "5", "--exterior", "none"};
+    const Workshop workshop;
+    ASSERT_GT(workshop.report(own_scene("still_life.nff"), words).at("deadlock").at("postponed"), 100);
+    expect_same(own_scene("still_life.nff"), words);
+}
+
+TEST(Ranks, MakeTheSameLoading) {
+    SKIP_WITHOUT_MPI();
+    expect_same(own_scene("still_life.nff"), {"--cells", "32x32", "--stage", "load", "--display", "gouraud"},
+                0, {2});
+}
+
+TEST(Ranks, ProveTheSameDeadlock) {
+    SKIP_WITHOUT_MPI();
+    expect_same(own_scene("facing_mirrors.nff"),
+                {"--cells", "24x24", "--ray-store", "1", "--networks", "shared", "--recovery", "none"}, 3);
+}
+
+TEST(Ranks, CallTheSameLivelock) {
+    SKIP_WITHOUT_MPI();
+    expect_same(own_scene("facing_mirrors.nff"),
+                {"--cells", "16x16", "--ray-store", "2", "--max-depth", "8", "--cost", "backoff=1"}, 3, {3});
+}
+
+TEST(Ranks, StopAtTheSameLimit) {
+    SKIP_WITHOUT_MPI();
+    expect_same(own_scene("still_life.nff"), {"--cells", "24x24", "--max-cycles", "14000"}, 4, {2});
+}
+
+// ---- how it ends otherwise
+
+/// The program's processes of this rank that were started from the workshop's folder.
+pid_t process_of_rank(const Workshop& workshop, int rank) {
+    const std::string wanted = "OMPI_COMM_WORLD_RANK=" + std::to_string(rank);
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+        const std::string name = entry.path().filename();
+        if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+        std::error_code error;
+        if (fs::read_symlink(entry.path() / "cwd", error) != workshop.path() || error) continue;
+        if (fs::read_symlink(entry.path() / "exe", error) != fs::path(RAYCELL_PROGRAM) || error) continue;
+        if (contains(read_text(entry.path() / "environ"), wanted + '\0')) return pid_t(std::stol(name));
+    }
+    return 0;
+}
+
+/// Starts a run of minutes by two ranks and sends one of them a signal when both are at it.
+Finished with_signal(const Workshop& workshop, int rank, int signal) {
+    std::thread sender([&] {
+        for (int tenths = 0; tenths < 200 && process_of_rank(workshop, rank) == 0; ++tenths)
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        std::this_thread::sleep_for(std::chrono::seconds(2));
+        const pid_t process = process_of_rank(workshop, rank);
+        EXPECT_NE(process, 0) << "rank " << rank << " ended by itself";
+        if (process != 0) kill(process, signal);
+    });
+    const Finished finished = workshop.run_program(
+        mpirun,
+        by_ranks(2, render(own_scene("still_life.nff"), "a", {"--cells", "256x256", "--link-bits", "1"})),
+        60);
+    sender.join();
+    return finished;
+}
+
+TEST(Ranks, EndAllWithoutAFileWhenOneIsKilled) {
+    SKIP_WITHOUT_MPI();
+    const Workshop workshop;
+    const Finished finished = with_signal(workshop, 1, SIGKILL);
+    EXPECT_FALSE(finished.timed_out);
+    EXPECT_NE(finished.exit_code, 0);
+    EXPECT_LT(finished.seconds, 30);
+    EXPECT_TRUE(workshop.results().empty());
+    EXPECT_EQ(process_of_rank(workshop, 0), 0) << "rank 0 lives on";
+}
+
+TEST(Ranks, KeepWhatTheyHaveWhenOneIsInterrupted) {
+    SKIP_WITHOUT_MPI();
+    const Workshop workshop;
+    const Finished finished = with_signal(workshop, 1, SIGTERM);
+    EXPECT_FALSE(finished.timed_out);
+    EXPECT_EQ(finished.exit_code, 5) << finished.err;
+    EXPECT_TRUE(contains(finished.err, "verdict interrupted")) << finished.err;
+    EXPECT_EQ(workshop.usual_results(),
+              (std::vector<std::string>{"a.cells.csv", "a.exr", "a.json", "a.png", "a.toml"}));
+    const Json json = Json::parse(read_text(workshop.result("a.json")));
+    EXPECT_EQ(json.at("verdict"), "interrupted");
+    expect_sound(json);
+}
+
+/// Expects a run by two ranks to say `message` once and to leave nothing.
+void expect_refused(const Words& words, int exit_code, const std::string& message, int ranks = 2) {
+    const Workshop workshop;
+    workshop.write("bad.nff", "v\ngarbage\n");
+    const Finished finished = workshop.run_program(mpirun, by_ranks(ranks, words), 30);
+    EXPECT_FALSE(finished.timed_out);
+    EXPECT_EQ(finished.exit_code, exit_code);
+    EXPECT_TRUE(contains(finished.err, message)) << finished.err;
+    const std::size_t first = finished.err.find(message);
+    EXPECT_EQ(finished.err.find(message, first + 1), std::string::npos) << "said twice:\n" << finished.err;
+    EXPECT_TRUE(workshop.results().empty());
+}
+
+TEST(Ranks, SayOnceWhatIsWrongWithAScene) {
+    SKIP_WITHOUT_MPI();
+    expect_refused({"render", "bad.nff", "-o", "results/a"}, 1, "bad.nff:2: 'v' in line 1: found 'garbage'");
+}
+
+TEST(Ranks, SayOnceWhatIsWrongWithTheOutput) {
+    SKIP_WITHOUT_MPI();
+    expect_refused({"render", own_scene("cornell.nff").string(), "-o", "missing/a"}, 1, "--output missing/a");
+}
+
+/// A process that takes itself for rank 0 of two or more: what is refused is so before it looks for the
+/// others.
+void expect_refused_alone(const Words& words, const std::string& message, int ranks = 2) {
+    SCOPED_TRACE(message);
+    const Workshop workshop;
+    setenv("OMPI_COMM_WORLD_SIZE", std::to_string(ranks).c_str(), 1);
+    const Finished finished = workshop.run(words, 20);
+    unsetenv("OMPI_COMM_WORLD_SIZE");
+    EXPECT_FALSE(finished.timed_out);
+    EXPECT_EQ(finished.exit_code, 2);
+    EXPECT_EQ(finished.error_lines(), 1u);
+    EXPECT_TRUE(contains(finished.err, message)) << finished.err;
+    EXPECT_TRUE(workshop.results().empty());
+}
+
+TEST(Ranks, RefuseWhatOnlyOneProcessCanDo) {
+    const std::string scene = own_scene("cornell.nff").string();
+    const Words words = {"render", scene, "-o", "results/a", "--cells", "16x2"};
+    const auto refuses = [&](const Words& more, const std::string& message, int ranks = 2) {
+        expect_refused_alone(joined(words, more), message, ranks);
+    };
+    refuses({"--engine", "untimed"}, "--engine untimed can't be had of several ranks");
+    refuses({"--probe", "1,1"}, "--probe can't");
+    refuses({"--vcd-on-deadlock"}, "--vcd-on-deadlock can't");
+    refuses({"--golden", "1,1"}, "--golden can't");
+    refuses({"--watch-pixel", "1,1"}, "--watch-pixel can't");
+    refuses({"--watch-ray", "1/1"}, "--watch-ray can't");
+    refuses({}, "3 ranks for 2 rows of cells; expected a row for each", 3);
+    expect_refused_alone({"truth", scene, "-o", "results/a"}, "truth can't be run by several ranks");
+    if (!RAYCELL_HAS_MPI) expect_refused_alone(words, "started as one of 2 ranks, but built without MPI");
+}
+
+TEST(Ranks, SayOnceWhatTheyRefuse) {
+    SKIP_WITHOUT_MPIRUN();
+    expect_refused({"render", own_scene("cornell.nff").string(), "-o", "results/a", "--engine", "untimed"}, 2,
+                   "--engine untimed can't be had of several ranks");
+}
+
+}  // namespace
+}  // namespace raycell::system_test
