@@ -1,5 +1,6 @@
 // How a run ended: verdicts, their proof, and what was stuck.
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <tuple>
 
@@ -183,11 +184,22 @@ void Machine::collect_time_outs(RunResult& result) const {
     }
     const Cell& first_cell = array_.cells().front();
     const std::size_t offset = index(first_cell.x(), first_cell.y());
-    for (int log = TimeOut::least_log; log <= TimeOut::most_log; ++log) {
-        struct Sums {
-            TimeOutResult all;
-            Cycle first = never;
-        } mine;
+    struct Sums {
+        TimeOutResult all;
+        Cycle first = never;
+        void join(const Sums& other) {
+            all.false_alarms += other.all.false_alarms;
+            all.early_alarms += other.all.early_alarms;
+            all.knot_cells += other.all.knot_cells;
+            all.knot_alarms += other.all.knot_alarms;
+            all.tail_alarms += other.all.tail_alarms;
+            first = std::min(first, other.first);
+        }
+    };
+    std::array<Sums, TimeOut::most_log - TimeOut::least_log + 1> sums;
+    for (std::size_t at = 0; at < sums.size(); ++at) {
+        const int log = TimeOut::least_log + int(at);
+        Sums& mine = sums[at];
         mine.all.cycles = Cycle(1) << log;
         for (std::size_t i = 0; i < array_.cells().size(); ++i) {
             const TimeOut& time_out = array_.cells()[i].time_out();
@@ -198,19 +210,16 @@ void Machine::collect_time_outs(RunResult& result) const {
             ++(state == 2 ? mine.all.knot_alarms : mine.all.tail_alarms);
             if (state == 2) mine.first = std::min(mine.first, time_out.since() + mine.all.cycles);
         }
-        mine = joined(mine, [](Sums& a, const Sums& b) {
-            a.all.false_alarms += b.all.false_alarms;
-            a.all.early_alarms += b.all.early_alarms;
-            a.all.knot_cells += b.all.knot_cells;
-            a.all.knot_alarms += b.all.knot_alarms;
-            a.all.tail_alarms += b.all.tail_alarms;
-            a.first = std::min(a.first, b.first);
-        });
+    }
+    sums = joined(sums, [](auto& a, const auto& b) {
+        for (std::size_t at = 0; at < a.size(); ++at) a[at].join(b[at]);
+    });
+    for (Sums& all : sums) {
         // Where nothing moves any more, a wait that goes on lasts for ever: longer than any time-out.
-        mine.all.missed_knots = missed;
-        if (mine.first != never)
-            mine.all.first_alarm_delay = std::int64_t(mine.first) - std::int64_t(result.knot_formed);
-        result.time_outs.push_back(mine.all);
+        all.all.missed_knots = missed;
+        if (all.first != never)
+            all.all.first_alarm_delay = std::int64_t(all.first) - std::int64_t(result.knot_formed);
+        result.time_outs.push_back(all.all);
     }
 }
 

@@ -25,20 +25,20 @@ void RankProgress::join(const RankProgress& other) {
     interrupted = std::max(interrupted, other.interrupted);
 }
 
-RankRows rows_of_rank(int rank, int count, int height) {
-    const auto cut = [&](int i) { return int(std::int64_t(height) * i / count); };
-    return {cut(rank), cut(rank + 1)};
-}
-
-RankExchange::RankExchange(RankTransport& transport, int height, bool with_exterior)
-    : transport_(transport), height_(height) {
-    if (count() > height) {
-        throw std::invalid_argument(std::to_string(count()) + " ranks for " + std::to_string(height) +
+std::vector<int> even_rank_rows(int count, int height) {
+    if (count > height) {
+        throw std::invalid_argument(std::to_string(count) + " ranks for " + std::to_string(height) +
                                     " rows of cells; expected a row for each at least");
     }
-    const RankRows rows = rows_of_rank(rank(), count(), height);
-    share_.first = rows.first;
-    share_.end = rows.end;
+    std::vector<int> rows;
+    for (int i = 0; i <= count; ++i) rows.push_back(int(std::int64_t(height) * i / count));
+    return rows;
+}
+
+RankExchange::RankExchange(RankTransport& transport, std::vector<int> rows, bool with_exterior)
+    : transport_(transport), rows_(std::move(rows)) {
+    share_.first = rows_.at(std::size_t(rank()));
+    share_.end = rows_.at(std::size_t(rank()) + 1);
     for (int other = 0; other < count(); ++other) {
         const bool neighbour = other == rank() - 1 || other == rank() + 1;
         const bool border = with_exterior && other != rank() && (other == 0 || rank() == 0);
@@ -56,9 +56,7 @@ RankExchange::RankExchange(RankTransport& transport, int height, bool with_exter
 }
 
 int RankExchange::owner(int y) const {
-    int low = 0;
-    while (y >= rows_of_rank(low, count(), height_).end) ++low;
-    return low;
+    return int(std::upper_bound(rows_.begin(), rows_.end(), y) - rows_.begin()) - 1;
 }
 
 SplitLinks* RankExchange::links_to(int other) {

@@ -46,20 +46,17 @@ class RankTransport {
     virtual std::vector<Bytes> gather(const Bytes& mine) = 0;
 };
 
-/// The rows of rank `rank` of `count`, as even as they can be: [first, end).
-struct RankRows {
-    int first;
-    int end;
-};
-RankRows rows_of_rank(int rank, int count, int height);
+/// Where each rank's rows begin, and behind the last one's the array's height: as even as they can be. Throws
+/// std::invalid_argument for fewer rows than ranks.
+std::vector<int> even_rank_rows(int count, int height);
 
 /// A rank's view of the others: links to them, meetings at the end of each cycle, sums over all.
 class RankExchange {
   public:
-    /// For an array of `height` rows, not fewer than ranks. `with_exterior`: the border of every rank's rows
-    /// is joined to the exterior processors, which are rank 0's. Throws std::invalid_argument for too few
-    /// rows.
-    RankExchange(RankTransport& transport, int height, bool with_exterior);
+    /// `rows` as even_rank_rows() has them: from 0, and each rank has one at least. `with_exterior`: the
+    /// border of every rank's rows is joined to the exterior processors, which are rank 0's. The transport
+    /// must outlive it.
+    RankExchange(RankTransport& transport, std::vector<int> rows, bool with_exterior);
 
     int rank() const { return transport_.rank(); }
     int count() const { return transport_.count(); }
@@ -95,7 +92,7 @@ class RankExchange {
     void carry(const RankProgress& mine, bool with_links);
 
     RankTransport& transport_;
-    int height_;
+    std::vector<int> rows_;
     ArrayShare share_;
     std::vector<Peer> peers_;
     std::vector<RankTransport::Parcel> parcels_;

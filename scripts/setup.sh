@@ -2,7 +2,8 @@
 # Usage: raycell_setup; raycell_build BUILD_DIR [TARGET ...]
 
 raycell_packages="g++ cmake ninja-build pkg-config libsystemc-dev libglm-dev libopenexr-dev libpng-dev
-    libembree-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libtinyobjloader-dev libgtest-dev"
+    libembree-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libtinyobjloader-dev libgtest-dev
+    libopenmpi-dev openmpi-bin"
 
 raycell_setup() {
     local missing=() package

@@ -81,11 +81,11 @@ class MpiSession : public RankSession {
     }
 
     std::vector<Bytes> gather_for_all(const Bytes& mine) override {
-        const std::vector<Bytes> gathered = gather(mine);
+        ByteWriter gathered;
+        for (const Bytes& theirs : gather(mine)) gathered.put_all(theirs);
+        const Bytes together = broadcast(gathered.take());
         std::vector<Bytes> all;
-        for (int i = 0; i < count_; ++i) {
-            all.push_back(broadcast(rank_ == 0 ? gathered[std::size_t(i)] : Bytes()));
-        }
+        for (ByteReader reader(together); !reader.at_end();) all.push_back(reader.get_all<std::byte>());
         return all;
     }
 

@@ -107,6 +107,7 @@ struct RenderOptions {
     std::vector<CellRange> watch_pixels;
     ProbeOptions probes;
     std::vector<CellRange> golden;  ///< cells whose messages are written
+    std::vector<int> rank_rows;     ///< first rows of the ranks after the first; empty: even
 };
 
 /// Which scene, from where, on how many cells.

@@ -1,6 +1,7 @@
 #include "testbench/raycell/rank_run.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "testbench/raycell/entry.hpp"
 #include "testbench/raycell/mpi_transport.hpp"
@@ -46,8 +47,28 @@ CellScene scene_of(ByteReader& bytes) {
 
 }  // namespace
 
+void add_rank_options(CLI::App& app, RenderOptions& options) {
+    app.add_option(
+           "--rank-rows", options.rank_rows,
+           "with mpirun: the rows at which the ranks after the first begin; else all have equally many")
+        ->delimiter(',')
+        ->type_name("ROW,...");
+}
+
 void check_ranks(const RenderOptions& options) {
-    if (launched_ranks().count == 1) return;
+    const auto count = std::size_t(launched_ranks().count);
+    const std::vector<int>& rows = options.rank_rows;
+    if (!rows.empty()) {
+        const bool rising =
+            std::adjacent_find(rows.begin(), rows.end(), std::greater_equal<>()) == rows.end();
+        if (rows.size() + 1 != count || !rising || rows.front() < 1 ||
+            rows.back() >= options.picture.height) {
+            throw UsageError("--rank-rows: expected " + std::to_string(count - 1) +
+                             " rising numbers from 1 to " + std::to_string(options.picture.height - 1) +
+                             " for " + std::to_string(count) + " ranks");
+        }
+    }
+    if (count == 1) return;
     const auto refuse = [](const std::string& what) {
         throw RanksRefused(what + " can't be had of several ranks; expected one process, without mpirun");
     };
@@ -99,11 +120,14 @@ CellScene RankRun::share_scene(const std::function<CellScene()>& read) {
     return scene_of(reader);
 }
 
-RankExchange& RankRun::exchange(const CellScene& scene, const PictureSettings& settings) {
+RankExchange& RankRun::exchange(const CellScene& scene, const RenderOptions& options) {
+    const PictureSettings& settings = options.picture;
+    std::vector<int> rows = even_rank_rows(session_->count(), scene.frame.height);
+    std::copy(options.rank_rows.begin(), options.rank_rows.end(), rows.begin() + 1);
     const bool beyond = std::any_of(scene.beyond.begin(), scene.beyond.end(), [](bool b) { return b; });
     const bool exterior =
         beyond && settings.exterior == ExteriorMode::host && settings.stage == RunStage::trace;
-    exchange_ = std::make_unique<RankExchange>(*session_, scene.frame.height, exterior);
+    exchange_ = std::make_unique<RankExchange>(*session_, std::move(rows), exterior);
     return *exchange_;
 }
 

@@ -11,7 +11,9 @@ namespace raycell {
 
 class RankSession;
 
-/// Throws RanksRefused for what only one process can do.
+/// --rank-rows. Not part of a run's configuration: nothing in its results depends on it.
+void add_rank_options(CLI::App& app, RenderOptions& options);
+/// Throws RanksRefused for what only one process can do, and UsageError for rows that don't fit.
 void check_ranks(const RenderOptions& options);
 
 /// This process among those that mpirun started. From its construction on, an error that is not told by
@@ -29,7 +31,7 @@ class RankRun {
     /// with its message, said once.
     CellScene share_scene(const std::function<CellScene()>& read);
     /// For the machine; once.
-    RankExchange& exchange(const CellScene& scene, const PictureSettings& settings);
+    RankExchange& exchange(const CellScene& scene, const RenderOptions& options);
     /// Rank 0 alone gets all ranks' text, in the order of ranks.
     std::string gather_text(const std::string& mine);
     /// `ranks` of the report, on rank 0: rows, hops, bytes and seconds of each. `machine` has run.

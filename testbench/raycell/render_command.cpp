@@ -71,7 +71,7 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     // has only one elaboration anyway.
     static Machine* const kept =
         new Machine("machine", scene, options.picture, options.machine, tracer, nullptr,
-                    granularity_of(options), ranks ? &ranks->exchange(scene, options.picture) : nullptr);
+                    granularity_of(options), ranks ? &ranks->exchange(scene, options) : nullptr);
     Machine& machine = *kept;
     const std::uint64_t cells = std::uint64_t(options.picture.width) * std::uint64_t(options.picture.height);
     const std::uint64_t after = memory_bytes();
@@ -254,6 +254,7 @@ Command add_render_command(CLI::App& program) {
     add_machine_options(*table, *options);
     add_watch_options(*table, *options);
     add_probe_options(*table, *options);
+    add_rank_options(*app, *options);
     return {app, [options, table] { return run(*options, *table); }};
 }
 

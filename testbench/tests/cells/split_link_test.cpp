@@ -187,16 +187,17 @@ TEST(TimedScheduler, GoesThroughCyclesThatOnlyOthersHaveWithoutWakingAnybody) {
 TEST(Ranks, HaveEveryRowOnceAndNoneHasNone) {
     for (int height = 1; height < 40; ++height) {
         for (int count = 1; count <= height; ++count) {
-            int next = 0;
-            for (int rank = 0; rank < count; ++rank) {
-                const RankRows rows = rows_of_rank(rank, count, height);
-                EXPECT_EQ(rows.first, next);
-                EXPECT_GT(rows.end, rows.first) << count << " ranks, " << height << " rows";
-                EXPECT_LE(rows.end - rows.first, (height + count - 1) / count);
-                next = rows.end;
+            const std::vector<int> rows = even_rank_rows(count, height);
+            ASSERT_EQ(rows.size(), std::size_t(count) + 1);
+            EXPECT_EQ(rows.front(), 0);
+            EXPECT_EQ(rows.back(), height);
+            for (std::size_t rank = 0; rank + 1 < rows.size(); ++rank) {
+                const int has = rows[rank + 1] - rows[rank];
+                EXPECT_GT(has, 0) << count << " ranks, " << height << " rows";
+                EXPECT_LE(has, (height + count - 1) / count) << count << " ranks, " << height << " rows";
             }
-            EXPECT_EQ(next, height);
         }
+        EXPECT_THROW(even_rank_rows(height + 1, height), std::invalid_argument);
     }
 }
 

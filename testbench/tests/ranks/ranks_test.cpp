@@ -26,7 +26,9 @@ constexpr const char* mpirun = "/usr/bin/mpirun";
 Words by_ranks(int ranks, const Words& words) {
     setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
     setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-    return joined({"-q", "--oversubscribe", "-np", std::to_string(ranks), RAYCELL_PROGRAM}, words);
+    return joined({"-q", "--oversubscribe", "-np", std::to_string(ranks),
+                   RAYCELL_PROGRAM},
+                  words);
 }
 
 Words render(const fs::path& scene, const std::string& name, const Words& more) {
@@ -80,6 +82,22 @@ void expect_same(const fs::path& scene, const Words& words, int exit_code = 0,
 TEST(Ranks, MakeTheSameRunWithTheExterior) {
     SKIP_WITHOUT_MPI();
     expect_same(own_scene("still_life.nff"), {"--cells", "32x32"});
+}
+
+TEST(Ranks, MakeTheSameRunWithRowsCutAnywhere) {
+    SKIP_WITHOUT_MPI();
+    const Workshop workshop;
+    const fs::path scene = own_scene("cornell.nff");
+    const Words words = {"--cells", "16x16", "--ray-store", "2"};
+    ASSERT_EQ(workshop.run(render(scene, "1", words)).exit_code, 0);
+    const Finished finished = workshop.run_program(
+        mpirun, by_ranks(4, joined(render(scene, "4", words), {"--rank-rows", "1,11,12"})));
+    ASSERT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_EQ(comparable(workshop, "4"), comparable(workshop, "1"));
+    std::vector<int> rows;
+    const Json report = Json::parse(read_text(workshop.result("4.json")));
+    for (const Json& rank : report.at("ranks").at("each")) rows.push_back(rank.at("rows"));
+    EXPECT_EQ(rows, (std::vector<int>{1, 10, 1, 4}));
 }
 
 TEST(Ranks, MakeTheSameRunOfAPublicScene) {
@@ -243,6 +261,24 @@ TEST(Ranks, RefuseWhatOnlyOneProcessCanDo) {
     refuses({}, "3 ranks for 2 rows of cells; expected a row for each", 3);
     expect_refused_alone({"truth", scene, "-o", "results/a"}, "truth can't be run by several ranks");
     if (!RAYCELL_HAS_MPI) expect_refused_alone(words, "started as one of 2 ranks, but built without MPI");
+}
+
+TEST(Ranks, RefuseRowsThatDoNotFit) {
+    const Words words = {"render", own_scene("cornell.nff").string(), "-o", "results/a", "--cells", "16x8"};
+    const auto refuses = [&](const std::string& rows, int ranks, const std::string& expected) {
+        SCOPED_TRACE(rows);
+        const Workshop workshop;
+        setenv("OMPI_COMM_WORLD_SIZE", std::to_string(ranks).c_str(), 1);
+        const Finished finished = workshop.run(joined(words, {"--rank-rows", rows}), 20);
+        unsetenv("OMPI_COMM_WORLD_SIZE");
+        EXPECT_EQ(finished.exit_code, 1);
+        EXPECT_TRUE(contains(finished.err, "--rank-rows: expected " + expected)) << finished.err;
+        EXPECT_TRUE(workshop.results().empty());
+    };
+    refuses("0", 2, "1 rising numbers from 1 to 7 for 2 ranks");
+    refuses("8", 2, "1 rising numbers from 1 to 7 for 2 ranks");
+    refuses("3,3", 3, "2 rising numbers from 1 to 7 for 3 ranks");
+    refuses("3", 1, "0 rising numbers from 1 to 7 for 1 ranks");
 }
 
 TEST(Ranks, SayOnceWhatTheyRefuse) {
