@@ -15,6 +15,7 @@ Cell::Cell(Environment& environment, int x, int y)
 
 void Cell::elaborate() {
     for (int side = 0; side < side_count; ++side) {
+        if (Link* out = out_[std::size_t(side)]) out->tell_room(&room_made_, 1U << unsigned(side));
         Link* in = in_[std::size_t(side)];
         if (!in) continue;
         const bool horizontal = side % 2 == 0;
@@ -47,6 +48,7 @@ Cycle Cell::step(Cycle now) {
         step_load(now);
         return next_;
     }
+    if (room_made_) unpark(now);
     // Most steps have few of these to do; what there is nothing for is not called.
     if (traversal_.packet) finish_traversal(now);
     if (shading_.job != Shading::Job::idle) finish_shading(now);
@@ -55,9 +57,9 @@ Cycle Cell::step(Cycle now) {
     // Replies of this cell and answers that pass through take turns when both want to go.
     if (replies_first_) {
         if (has_replies()) move_replies(now);
-        if (pending_ >> answer_bits) move_answers(now);
+        if (answers_to_move()) move_answers(now);
     } else {
-        if (pending_ >> answer_bits) move_answers(now);
+        if (answers_to_move()) move_answers(now);
         if (has_replies()) move_replies(now);
     }
     if (!own_ && (root_to_send_ || env_.phase == Phase::precast)) feed_own(now);
@@ -65,8 +67,17 @@ Cycle Cell::step(Cycle now) {
     move_rays(now);
     if (!traversal_.packet) start_traversal(now);
     if (ray_store_.used() > 0 && shading_.job == Shading::Job::idle) start_shading(now);
-    time_out_.step(moved_, blocked_, now);
+    time_out_.step(moved_, blocked_ || parked_, now);
     return next_;
+}
+
+void Cell::unpark(Cycle now) {
+    for (; room_made_; room_made_ &= room_made_ - 1) {
+        std::uint32_t& bits = parked_on_[std::size_t(__builtin_ctz(room_made_))];
+        parked_ &= ~bits;
+        bits = 0;
+    }
+    if (overdue_parked_) look_for_overdue_ = std::min(look_for_overdue_, now);
 }
 
 void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail) {
@@ -93,6 +104,7 @@ RayPacket* Cell::packet_at(std::size_t place) const {
 
 void Cell::remove_from(std::size_t place) {
     moved_ = true;
+    decided_ &= ~bit_of(place);
     if (place < ray_input_count_) {
         const RayInput& input = ray_inputs_[place];
         Link& link = link_of(place);
@@ -123,13 +135,14 @@ void Cell::finish_traversal(Cycle now) {
     }
     traversal_.packet->stage = RayPacket::Stage::decided;
     traversal_.packet->decided = now;
+    decided_ |= bit_of(traversal_.place);
     traversal_.packet = nullptr;
 }
 
 /// The next untested ray, round robin over the places.
 void Cell::start_traversal(Cycle now) {
     const std::size_t slots = slot_places();
-    std::uint32_t inputs = occupied();
+    std::uint32_t inputs = occupied() & ~decided_;
     if (inputs == 0 && slots == 0) return;
     // Places of slots come last, so the round is: inputs from next_test_ on, slots, inputs before it.
     const std::size_t first_slot = ray_input_count_ + std::size_t(1);
@@ -161,7 +174,7 @@ bool Cell::test_at(std::size_t place, Cycle now) {
                                         : visit_cycles(packet->visit, env_.settings, env_.costs()));
     env_.counters.traversal_cycles += cycles;
     statistics_.traversal_cycles += cycles;
-    traversal_ = {packet, now + cycles};
+    traversal_ = {packet, now + cycles, std::uint32_t(place)};
     next_test_ = std::uint32_t(place + 1);
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
            std::uint32_t(packet->visit.event));
@@ -211,7 +224,7 @@ void Cell::move_answers(Cycle now) {
     const int index = env_.classes.answer;
     std::array<int, side_count> order;  // sides with an answer, oldest first
     int count = 0;
-    for (std::uint32_t sides = pending_ >> answer_bits & ~answers_moved_; sides; sides &= sides - 1) {
+    for (std::uint32_t sides = answers_to_move() & ~answers_moved_; sides; sides &= sides - 1) {
         const int side = __builtin_ctz(sides);
         Link* in = in_[std::size_t(side)];
         const Message* head = in->head(index);
@@ -226,11 +239,13 @@ void Cell::move_answers(Cycle now) {
     }
     for (int i = 0; i < count; ++i) {
         const auto side = std::size_t(order[std::size_t(i)]);
-        move_answer(*in_[side], answer_waits_[side], now);
+        move_answer(side, now);
     }
 }
 
-void Cell::move_answer(Link& in, Wait& wait, Cycle now) {
+void Cell::move_answer(std::size_t from, Cycle now) {
+    Link& in = *in_[from];
+    Wait& wait = answer_waits_[from];
     const int index = env_.classes.answer;
     const Message message = *in.head(index);
     const Cycle ready = in.arrival(index) + env_.costs().route_return;
@@ -253,8 +268,9 @@ void Cell::move_answer(Link& in, Wait& wait, Cycle now) {
         Link* out = out_[std::size_t(way)];
         if (!out->can_send(index, next_)) {
             blocked_ = true;
-            stall(wait, out->room(index) == Link::Room::full ? Stall::answer_full : Stall::answer_busy, id,
-                  now);
+            const bool full = out->room(index) == Link::Room::full;
+            stall(wait, full ? Stall::answer_full : Stall::answer_busy, id, now);
+            if (full && out->sender_waits(index)) park(1U << (answer_bits + unsigned(from)), std::size_t(way));
             return;
         }
         ++env_.counters.rays.return_hops;
@@ -286,7 +302,7 @@ void Cell::move_rays(Cycle now) {
             first = {packet->decided, place, packet};
         }
     };
-    for (std::uint32_t inputs = occupied(); inputs; inputs &= inputs - 1) {
+    for (std::uint32_t inputs = decided_ & ~parked_; inputs; inputs &= inputs - 1) {
         look(std::size_t(__builtin_ctz(inputs)));
     }
     const std::size_t slots = slot_places();
@@ -344,6 +360,7 @@ bool Cell::finish_ray(RayPacket& packet, std::size_t place, Cycle now) {
             start_outside(packet.ray, packet.visit.t_leave, env_.context.arithmetic);
             packet.stage = RayPacket::Stage::untested;
             packet.wait = {now, Stall::traversal};
+            decided_ &= ~bit_of(place);
             return true;
     }
     return false;
@@ -367,7 +384,9 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     Link* out = out_[std::size_t(side)];
     const int index = env_.classes.ray(ray);
     if (!out->can_send(index, next_)) {
-        cause_ = out->room(index) == Link::Room::full ? Stall::output_full : Stall::output_busy;
+        const bool full = out->room(index) == Link::Room::full;
+        cause_ = full ? Stall::output_full : Stall::output_busy;
+        if (full && out->sender_waits(index)) park(bit_of(place), std::size_t(side));
         return false;
     }
     remove_from(place);

@@ -86,6 +86,7 @@ class Cell final : public Client {
     struct Traversal {
         RayPacket* packet = nullptr;
         Cycle done = 0;
+        std::uint32_t place = 0;
     };
     struct Shading {
         enum class Job : std::uint8_t { idle, set_up, shade, direct, direct_answer };
@@ -103,7 +104,9 @@ class Cell final : public Client {
     void finish_traversal(Cycle now);
     void start_traversal(Cycle now);
     void move_answers(Cycle now);
-    void move_answer(Link& in, Wait& wait, Cycle now);
+    void move_answer(std::size_t from, Cycle now);
+    /// Bit per side with an answer that may move.
+    std::uint32_t answers_to_move() const { return (pending_ & ~parked_) >> answer_bits; }
     void move_replies(Cycle now);
     void move_rays(Cycle now);
     // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
@@ -195,6 +198,16 @@ class Cell final : public Client {
         return inputs | std::uint32_t(own_ != nullptr) << ray_input_count_;
     }
     bool test_at(std::size_t place, Cycle now);
+    /// The bit of an input or of the own ray in the words below; 0 for a slot's place.
+    std::uint32_t bit_of(std::size_t place) const {
+        return place <= ray_input_count_ ? 1U << unsigned(place) : 0;
+    }
+    /// What waits for room behind this side's output is not tried again before the link says that there is.
+    void park(std::uint32_t bits, std::size_t side) {
+        parked_ |= bits;
+        parked_on_[side] |= bits;
+    }
+    void unpark(Cycle now);
 
     // What every step looks at comes first; what few cells or reports need, last.
     Environment& env_;
@@ -205,6 +218,11 @@ class Cell final : public Client {
     /// Bit per buffer that holds anything: ray inputs from 0, answers by side from `answer_bits`.
     std::uint32_t pending_ = 0;
     static constexpr unsigned answer_bits = 16;
+    // Bits as in `pending_`, the own ray's after the ray inputs.
+    std::uint32_t decided_ = 0;  ///< rays whose test is over
+    std::uint32_t parked_ = 0;   ///< rays and answers that wait for room behind an output ...
+    std::array<std::uint32_t, side_count> parked_on_{};  ///< ... by its side; some may have left since
+    std::uint32_t room_made_ = 0;      ///< bit per output: room was made since somebody parked on it
     std::uint32_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
     Traversal traversal_;
     RayPacket* own_ = nullptr;  ///< primary or precast ray on its way out
@@ -227,6 +245,7 @@ class Cell final : public Client {
     static constexpr Cycle patience = 65536;
     static constexpr Cycle epoch = patience / 8;  ///< ages are counted in these
     Cycle look_for_overdue_ = patience;           ///< cycle from which on to look for such messages
+    bool overdue_parked_ = false;                 ///< there were some, all of which are parked
     std::uint64_t hash_ = 0;
     TimeOut time_out_;
     RayStore ray_store_;

@@ -84,6 +84,11 @@ void Link::watch(int index, std::uint32_t* pending, std::uint32_t bits) {
     if (b.count > 0) *pending |= bits;
 }
 
+void Link::tell_room(std::uint32_t* room_made, std::uint32_t bits) {
+    room_made_ = room_made;
+    room_bits_ = bits;
+}
+
 Link::ClassStatistics Link::statistics(int index) const {
     ClassStatistics sum;
     const Buffer* b = find(index);

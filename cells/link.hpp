@@ -100,6 +100,11 @@ class Link final : public LinkOut, public LinkIn {
     /// Asks the link to keep `bits` set in `pending` while the buffer of a class holds anything, on the wires
     /// or arrived: so a cell need not look into empty buffers. One `pending` for all classes.
     void watch(int index, std::uint32_t* pending, std::uint32_t bits);
+    /// Asks the link to set `bits` in `room_made` when a sender that can_send() has refused for want of room is
+    /// woken: until then it need not ask again.
+    void tell_room(std::uint32_t* room_made, std::uint32_t bits);
+    /// Whether a sender was refused for want of room and none has been made since.
+    bool sender_waits(int index) const { return buffer(index).sender_waits; }
     int occupancy(int index) const override {
         const Buffer* buffer = find(index);
         return buffer ? buffer->count : 0;
@@ -180,7 +185,9 @@ class Link final : public LinkOut, public LinkIn {
     Cycle wires_free_ = 0;
     Client* source_ = nullptr;
     Client* sink_ = nullptr;
-    std::uint32_t* pending_ = nullptr;  ///< the sink's
+    std::uint32_t* pending_ = nullptr;    ///< the sink's
+    std::uint32_t* room_made_ = nullptr;  ///< the source's
+    std::uint32_t room_bits_ = 0;
     std::unique_ptr<Extras> extras_;
     std::uint64_t busy_cycles_ = 0;
     std::uint16_t depth_;
@@ -242,6 +249,7 @@ inline void Link::pop(int index) {
     ++b.popped_now;
     if (b.sender_waits) {
         b.sender_waits = false;
+        if (room_made_) *room_made_ |= room_bits_;
         if (source_) scheduler_.wake(*source_, now + 1);
     }
 }
