@@ -67,6 +67,7 @@ void Array::make_hosts(const Granularity& granularity) {
 }
 
 void Array::make_links() {
+    links_.reserve(cells_.size() * side_count);
     ways_.reserve(cells_.size() * side_count);
     for (int y = 0; y < environment_.height(); ++y) {
         for (int x = 0; x < environment_.width(); ++x) {

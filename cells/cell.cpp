@@ -63,10 +63,14 @@ Cycle Cell::step(Cycle now) {
         if (has_replies()) move_replies(now);
     }
     if (!own_ && (root_to_send_ || env_.phase == Phase::precast)) feed_own(now);
-    if (ray_store_.used() > 0) feed_children(now);
+    if (now >= feed_at_) {
+        feed_children(now);
+    } else if (!env_.draining) {
+        want(feed_at_);
+    }
     move_rays(now);
     if (!traversal_.packet) start_traversal(now);
-    if (ray_store_.used() > 0 && shading_.job == Shading::Job::idle) start_shading(now);
+    if (look_to_shade_ && shading_.job == Shading::Job::idle) start_shading(now);
     time_out_.step(moved_, blocked_ || parked_, now);
     return next_;
 }
@@ -117,6 +121,8 @@ void Cell::remove_from(std::size_t place) {
     } else {
         Slot& slot = ray_store_[std::uint32_t(place - ray_input_count_ - 1)];
         slot.child = nullptr;
+        --children_;
+        slot_changed();
         slot.wait = {env_.scheduler.now(), Stall::shading};
     }
     want(env_.scheduler.now() + 1);  // the next child or own ray may follow
@@ -176,6 +182,11 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     statistics_.traversal_cycles += cycles;
     traversal_ = {packet, now + cycles, std::uint32_t(place)};
     next_test_ = std::uint32_t(place + 1);
+    if (place <= ray_input_count_) {
+        const bool goes_on = packet->visit.event == Visit::Event::forward;
+        ways_[place] = {goes_on ? std::uint8_t(packet->visit.crossing.side) : no_way,
+                        std::uint8_t(env_.classes.ray(packet->ray))};
+    }
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
            std::uint32_t(packet->visit.event));
     want(traversal_.done);
@@ -211,11 +222,12 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
     tell(now, CellEvent::answer, answer.id, std::uint32_t(answer.kind));
     ++env_.counters.rays.return_hops;
     ++statistics_.return_hops;
-    if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer.id >> 32)].hops;
+    if (env_.phase == Phase::trace) ++env_.pixel_hops[std::size_t(answer.id >> 32)];
     Answer* copy = env_.pools.answers.take();
     *copy = answer;
     const bool intensity = answer.kind == Answer::Kind::intensity;
-    out->send(env_.classes.answer, Message(copy), intensity ? env_.cycles.intensity : env_.cycles.verdict);
+    out->send(env_.classes.answer, Message(copy), intensity ? env_.cycles.intensity : env_.cycles.verdict,
+              env_.answer_routing);
     record_send(now, route(answer), env_.classes.answer, answer.id);
     return true;
 }
@@ -275,9 +287,10 @@ void Cell::move_answer(std::size_t from, Cycle now) {
         }
         ++env_.counters.rays.return_hops;
         ++statistics_.return_hops;
-        if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
+        if (env_.phase == Phase::trace) ++env_.pixel_hops[std::size_t(answer->id >> 32)];
         const bool intensity = answer->kind == Answer::Kind::intensity;
-        out->send(index, message, intensity ? env_.cycles.intensity : env_.cycles.verdict);
+        out->send(index, message, intensity ? env_.cycles.intensity : env_.cycles.verdict,
+                  env_.answer_routing);
         record_send(now, way, index, answer->id);
     }
     answer_moved_ = true;
@@ -401,7 +414,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
         ++env_.counters.rays.ray_hops;
         ++statistics_.ray_hops;
     }
-    if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(ray.id >> 32)].hops;
+    if (env_.phase == Phase::trace) ++env_.pixel_hops[std::size_t(ray.id >> 32)];
     ++packet.hops;
     out->send(index, Message(&packet), cycles);
     record_send(now, side, index, ray.id);
@@ -464,6 +477,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     slot.packet = &packet;
     slot.since = slot.changed = now;
     slot.wait = {now, Stall::shading};
+    slot_changed();
     ++env_.counters.slots_used;
     record(now, CellEvent::accept, std::uint32_t(packet.ray.id), packet.ray.id, *index);
     return true;

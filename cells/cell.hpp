@@ -33,6 +33,14 @@ class Cell final : public Client {
     /// All links are connected.
     void elaborate();
 
+    // Ask for the memory that the next step will touch, for hosts that know some steps ahead which cells they
+    // run: each may read what the one before asked for. None changes anything.
+    void fetch() const;
+    void fetch_links() const;
+    void fetch_buffers() const;
+    void fetch_messages() const;
+    void fetch_ways() const;
+
     /// Woken: the host is to call step().
     void activate() override { host_->activate(*this); }
 
@@ -136,7 +144,7 @@ class Cell final : public Client {
     RayPacket* next_child(Slot& slot, std::uint32_t index, Cycle now);
     bool complete(const Slot& slot) const;
     bool slot_complete() const;
-    bool has_replies() const { return ray_store_.used() > 0 || shading_.job == Shading::Job::direct_answer; }
+    bool has_replies() const { return replies_ > 0; }
     void finish_shading(Cycle now);
     void start_shading(Cycle now);
     void begin_shade(std::uint32_t index, Cycle now);
@@ -191,7 +199,12 @@ class Cell final : public Client {
     }
 
     /// Places of slots that hold a child; there are none without slots in use.
-    std::size_t slot_places() const { return ray_store_.used() > 0 ? ray_store_.touched() : 0; }
+    std::size_t slot_places() const { return children_ > 0 ? ray_store_.touched() : 0; }
+    /// Something of a slot has changed: its next child may go, or the shading unit may have work.
+    void slot_changed() {
+        feed_at_ = 0;
+        look_to_shade_ = true;
+    }
     /// Bit per place that may hold a ray: inputs and the own ray.
     std::uint32_t occupied() const {
         const std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1);
@@ -208,6 +221,13 @@ class Cell final : public Client {
         parked_on_[side] |= bits;
     }
     void unpark(Cycle now);
+    std::uint32_t bit_in_test() const { return traversal_.packet ? bit_of(traversal_.place) : 0; }
+    /// The output that a decided ray at this place wants, for fetch_ways(): side and class.
+    struct Way {
+        std::uint8_t side = no_way;
+        std::uint8_t index = 0;
+    };
+    static constexpr std::uint8_t no_way = 255;
 
     // What every step looks at comes first; what few cells or reports need, last.
     Environment& env_;
@@ -229,6 +249,10 @@ class Cell final : public Client {
     Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
     std::uint8_t ray_input_count_ = 0;
     std::uint8_t own_attempts_ = 0;
+    Cycle feed_at_ = never;       ///< cycle from which on a slot may have a child to send
+    bool look_to_shade_ = false;  ///< a slot may have work for the shading unit
+    std::uint16_t children_ = 0;  ///< on their way out of slots
+    std::uint16_t replies_ = 0;   ///< answers of slots and of the shading unit that want to go
     bool replies_first_ = false;  ///< replies go before answers that came in, which went last
     bool answer_moved_ = false;   ///< this cycle: an answer left an input
     bool moved_ = false;          ///< this cycle: something went on, or came home
@@ -238,6 +262,7 @@ class Cell final : public Client {
     std::uint32_t next_test_ = 0;  ///< round robin over places
     Stall cause_ = Stall::none;    ///< why the last attempt to move something failed
     std::array<RayInput, most_ray_inputs> ray_inputs_{};
+    std::array<Way, most_ray_inputs + 1> ways_{};  ///< by place, of inputs and the own ray
     std::array<Link*, side_count> in_{};
     std::array<Link*, side_count> out_{};
     /// Cycles that a message which waits to move is passed over by others; after that it goes before all of

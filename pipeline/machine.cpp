@@ -212,6 +212,9 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     collect(result);
     if (going() && result.storage.overflowed > 0) result.verdict = Verdict::capacity;
     result.picture = picture_;
+    for (std::size_t i = 0; i < picture_.pixels.size(); ++i) {
+        result.picture.pixels[i].hops = environment_.pixel_hops[i];
+    }
     result.ended = scheduler_.now();
     return result;
 }
