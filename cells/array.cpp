@@ -71,6 +71,7 @@ void Array::make_hosts(const Granularity& granularity) {
 
 void Array::make_links() {
     const ArrayShare& share = environment_.share;
+    links_.reserve(cells_.size() * side_count);
     ways_.reserve(cells_.size() * side_count);
     for (int y = share.first; y < share.end; ++y) {
         for (int x = 0; x < environment_.width(); ++x) {

@@ -1,7 +1,6 @@
 // RC, the cell array: W x H cells, 4-connected (paper, section 2.4).
 #pragma once
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <systemc>
@@ -9,6 +8,7 @@
 
 #include "cells/cell_module.hpp"
 #include "cells/cell_tile.hpp"
+#include "cells/stable_array.hpp"
 
 namespace raycell {
 
@@ -43,14 +43,14 @@ class Array : public sc_core::sc_module {
     Cell& cell(int x, int y) { return cells_[index(x, y)]; }
     const Cell& cell(int x, int y) const { return cells_[index(x, y)]; }
     /// Row by row.
-    std::vector<Cell>& cells() { return cells_; }
-    const std::vector<Cell>& cells() const { return cells_; }
+    StableArray<Cell>& cells() { return cells_; }
+    const StableArray<Cell>& cells() const { return cells_; }
     /// Null for a cell in a tile.
     CellModule* module(int x, int y);
     std::size_t tiles() const { return tiles_.size(); }
 
-    std::deque<Link>& links() { return links_; }
-    const std::deque<Link>& links() const { return links_; }
+    StableArray<Link>& links() { return links_; }
+    const StableArray<Link>& links() const { return links_; }
     /// Index into cells() of the cell that links()[link] leads to: where its buffers stand.
     std::size_t sink_of(std::size_t link) const { return ways_[link] / side_count; }
     /// The side of its source over which links()[link] leads.
@@ -87,10 +87,10 @@ class Array : public sc_core::sc_module {
     void end_of_elaboration() override;
 
     Environment& environment_;
-    std::vector<Cell> cells_;
+    StableArray<Cell> cells_;
     std::vector<std::unique_ptr<CellTile>> tiles_;
     std::map<std::size_t, std::unique_ptr<CellModule>> modules_;  ///< by the cell's index
-    std::deque<Link> links_;
+    StableArray<Link> links_;
     std::vector<std::uint32_t> ways_;  ///< by link: index of its sink · 4 + side of its source
 };
 

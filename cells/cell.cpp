@@ -15,6 +15,7 @@ Cell::Cell(Environment& environment, int x, int y)
 
 void Cell::elaborate() {
     for (int side = 0; side < side_count; ++side) {
+        if (Link* out = out_[std::size_t(side)]) out->tell_room(&room_made_, 1U << unsigned(side));
         Link* in = in_[std::size_t(side)];
         if (!in) continue;
         const bool horizontal = side % 2 == 0;
@@ -47,6 +48,7 @@ Cycle Cell::step(Cycle now) {
         step_load(now);
         return next_;
     }
+    if (room_made_) unpark(now);
     // Most steps have few of these to do; what there is nothing for is not called.
     if (traversal_.packet) finish_traversal(now);
     if (shading_.job != Shading::Job::idle) finish_shading(now);
@@ -55,18 +57,31 @@ Cycle Cell::step(Cycle now) {
     // Replies of this cell and answers that pass through take turns when both want to go.
     if (replies_first_) {
         if (has_replies()) move_replies(now);
-        if (pending_ >> answer_bits) move_answers(now);
+        if (answers_to_move()) move_answers(now);
     } else {
-        if (pending_ >> answer_bits) move_answers(now);
+        if (answers_to_move()) move_answers(now);
         if (has_replies()) move_replies(now);
     }
     if (!own_ && (root_to_send_ || env_.phase == Phase::precast)) feed_own(now);
-    if (ray_store_.used() > 0) feed_children(now);
+    if (now >= feed_at_) {
+        feed_children(now);
+    } else if (!env_.draining) {
+        want(feed_at_);
+    }
     move_rays(now);
     if (!traversal_.packet) start_traversal(now);
-    if (ray_store_.used() > 0 && shading_.job == Shading::Job::idle) start_shading(now);
-    time_out_.step(moved_, blocked_, now);
+    if (look_to_shade_ && shading_.job == Shading::Job::idle) start_shading(now);
+    time_out_.step(moved_, blocked_ || parked_, now);
     return next_;
+}
+
+void Cell::unpark(Cycle now) {
+    for (; room_made_; room_made_ &= room_made_ - 1) {
+        std::uint32_t& bits = parked_on_[std::size_t(__builtin_ctz(room_made_))];
+        parked_ &= ~bits;
+        bits = 0;
+    }
+    if (overdue_parked_) look_for_overdue_ = std::min(look_for_overdue_, now);
 }
 
 void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail) {
@@ -93,6 +108,7 @@ RayPacket* Cell::packet_at(std::size_t place) const {
 
 void Cell::remove_from(std::size_t place) {
     moved_ = true;
+    decided_ &= ~bit_of(place);
     if (place < ray_input_count_) {
         const RayInput& input = ray_inputs_[place];
         Link& link = link_of(place);
@@ -105,6 +121,8 @@ void Cell::remove_from(std::size_t place) {
     } else {
         Slot& slot = ray_store_[std::uint32_t(place - ray_input_count_ - 1)];
         slot.child = nullptr;
+        --children_;
+        slot_changed();
         slot.wait = {env_.scheduler.now(), Stall::shading};
     }
     want(env_.scheduler.now() + 1);  // the next child or own ray may follow
@@ -123,13 +141,14 @@ void Cell::finish_traversal(Cycle now) {
     }
     traversal_.packet->stage = RayPacket::Stage::decided;
     traversal_.packet->decided = now;
+    decided_ |= bit_of(traversal_.place);
     traversal_.packet = nullptr;
 }
 
 /// The next untested ray, round robin over the places.
 void Cell::start_traversal(Cycle now) {
     const std::size_t slots = slot_places();
-    std::uint32_t inputs = occupied();
+    std::uint32_t inputs = occupied() & ~decided_;
     if (inputs == 0 && slots == 0) return;
     // Places of slots come last, so the round is: inputs from next_test_ on, slots, inputs before it.
     const std::size_t first_slot = ray_input_count_ + std::size_t(1);
@@ -161,8 +180,13 @@ bool Cell::test_at(std::size_t place, Cycle now) {
                                         : visit_cycles(packet->visit, env_.settings, env_.costs()));
     env_.counters.traversal_cycles += cycles;
     statistics_.traversal_cycles += cycles;
-    traversal_ = {packet, now + cycles};
+    traversal_ = {packet, now + cycles, std::uint32_t(place)};
     next_test_ = std::uint32_t(place + 1);
+    if (place <= ray_input_count_) {
+        const bool goes_on = packet->visit.event == Visit::Event::forward;
+        ways_[place] = {goes_on ? std::uint8_t(packet->visit.crossing.side) : no_way,
+                        std::uint8_t(env_.classes.ray(packet->ray))};
+    }
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
            std::uint32_t(packet->visit.event));
     want(traversal_.done);
@@ -198,11 +222,12 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
     tell(now, CellEvent::answer, answer.id, std::uint32_t(answer.kind));
     ++env_.counters.rays.return_hops;
     ++statistics_.return_hops;
-    if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer.id >> 32)].hops;
+    if (env_.phase == Phase::trace) ++env_.pixel_hops[std::size_t(answer.id >> 32)];
     Answer* copy = env_.pools.answers.take();
     *copy = answer;
     const bool intensity = answer.kind == Answer::Kind::intensity;
-    out->send(env_.classes.answer, Message(copy), intensity ? env_.cycles.intensity : env_.cycles.verdict);
+    out->send(env_.classes.answer, Message(copy), intensity ? env_.cycles.intensity : env_.cycles.verdict,
+              env_.answer_routing);
     record_send(now, route(answer), env_.classes.answer, answer.id);
     return true;
 }
@@ -211,7 +236,7 @@ void Cell::move_answers(Cycle now) {
     const int index = env_.classes.answer;
     std::array<int, side_count> order;  // sides with an answer, oldest first
     int count = 0;
-    for (std::uint32_t sides = pending_ >> answer_bits & ~answers_moved_; sides; sides &= sides - 1) {
+    for (std::uint32_t sides = answers_to_move() & ~answers_moved_; sides; sides &= sides - 1) {
         const int side = __builtin_ctz(sides);
         Link* in = in_[std::size_t(side)];
         const Message* head = in->head(index);
@@ -226,11 +251,13 @@ void Cell::move_answers(Cycle now) {
     }
     for (int i = 0; i < count; ++i) {
         const auto side = std::size_t(order[std::size_t(i)]);
-        move_answer(*in_[side], answer_waits_[side], now);
+        move_answer(side, now);
     }
 }
 
-void Cell::move_answer(Link& in, Wait& wait, Cycle now) {
+void Cell::move_answer(std::size_t from, Cycle now) {
+    Link& in = *in_[from];
+    Wait& wait = answer_waits_[from];
     const int index = env_.classes.answer;
     const Message message = *in.head(index);
     const Cycle ready = in.arrival(index) + env_.costs().route_return;
@@ -253,15 +280,17 @@ void Cell::move_answer(Link& in, Wait& wait, Cycle now) {
         Link* out = out_[std::size_t(way)];
         if (!out->can_send(index, next_)) {
             blocked_ = true;
-            stall(wait, out->room(index) == Link::Room::full ? Stall::answer_full : Stall::answer_busy, id,
-                  now);
+            const bool full = out->room(index) == Link::Room::full;
+            stall(wait, full ? Stall::answer_full : Stall::answer_busy, id, now);
+            if (full && out->sender_waits(index)) park(1U << (answer_bits + unsigned(from)), std::size_t(way));
             return;
         }
         ++env_.counters.rays.return_hops;
         ++statistics_.return_hops;
-        if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(answer->id >> 32)].hops;
+        if (env_.phase == Phase::trace) ++env_.pixel_hops[std::size_t(answer->id >> 32)];
         const bool intensity = answer->kind == Answer::Kind::intensity;
-        out->send(index, message, intensity ? env_.cycles.intensity : env_.cycles.verdict);
+        out->send(index, message, intensity ? env_.cycles.intensity : env_.cycles.verdict,
+                  env_.answer_routing);
         record_send(now, way, index, answer->id);
     }
     answer_moved_ = true;
@@ -286,7 +315,7 @@ void Cell::move_rays(Cycle now) {
             first = {packet->decided, place, packet};
         }
     };
-    for (std::uint32_t inputs = occupied(); inputs; inputs &= inputs - 1) {
+    for (std::uint32_t inputs = decided_ & ~parked_; inputs; inputs &= inputs - 1) {
         look(std::size_t(__builtin_ctz(inputs)));
     }
     const std::size_t slots = slot_places();
@@ -344,6 +373,7 @@ bool Cell::finish_ray(RayPacket& packet, std::size_t place, Cycle now) {
             start_outside(packet.ray, packet.visit.t_leave, env_.context.arithmetic);
             packet.stage = RayPacket::Stage::untested;
             packet.wait = {now, Stall::traversal};
+            decided_ &= ~bit_of(place);
             return true;
     }
     return false;
@@ -367,7 +397,9 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     Link* out = out_[std::size_t(side)];
     const int index = env_.classes.ray(ray);
     if (!out->can_send(index, next_)) {
-        cause_ = out->room(index) == Link::Room::full ? Stall::output_full : Stall::output_busy;
+        const bool full = out->room(index) == Link::Room::full;
+        cause_ = full ? Stall::output_full : Stall::output_busy;
+        if (full && out->sender_waits(index)) park(bit_of(place), std::size_t(side));
         return false;
     }
     remove_from(place);
@@ -382,7 +414,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
         ++env_.counters.rays.ray_hops;
         ++statistics_.ray_hops;
     }
-    if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(ray.id >> 32)].hops;
+    if (env_.phase == Phase::trace) ++env_.pixel_hops[std::size_t(ray.id >> 32)];
     ++packet.hops;
     out->send(index, Message(&packet), cycles);
     record_send(now, side, index, ray.id);
@@ -445,6 +477,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     slot.packet = &packet;
     slot.since = slot.changed = now;
     slot.wait = {now, Stall::shading};
+    slot_changed();
     ++env_.counters.slots_used;
     record(now, CellEvent::accept, std::uint32_t(packet.ray.id), packet.ray.id, *index);
     return true;

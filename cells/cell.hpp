@@ -33,6 +33,14 @@ class Cell final : public Client {
     /// All links are connected.
     void elaborate();
 
+    // Ask for the memory that the next step will touch, for hosts that know some steps ahead which cells they
+    // run: each may read what the one before asked for. None changes anything.
+    void fetch() const;
+    void fetch_links() const;
+    void fetch_buffers() const;
+    void fetch_messages() const;
+    void fetch_ways() const;
+
     /// Woken: the host is to call step().
     void activate() override { host_->activate(*this); }
 
@@ -86,6 +94,7 @@ class Cell final : public Client {
     struct Traversal {
         RayPacket* packet = nullptr;
         Cycle done = 0;
+        std::uint32_t place = 0;
     };
     struct Shading {
         enum class Job : std::uint8_t { idle, set_up, shade, direct, direct_answer };
@@ -103,7 +112,9 @@ class Cell final : public Client {
     void finish_traversal(Cycle now);
     void start_traversal(Cycle now);
     void move_answers(Cycle now);
-    void move_answer(Link& in, Wait& wait, Cycle now);
+    void move_answer(std::size_t from, Cycle now);
+    /// Bit per side with an answer that may move.
+    std::uint32_t answers_to_move() const { return (pending_ & ~parked_) >> answer_bits; }
     void move_replies(Cycle now);
     void move_rays(Cycle now);
     // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
@@ -133,7 +144,7 @@ class Cell final : public Client {
     RayPacket* next_child(Slot& slot, std::uint32_t index, Cycle now);
     bool complete(const Slot& slot) const;
     bool slot_complete() const;
-    bool has_replies() const { return ray_store_.used() > 0 || shading_.job == Shading::Job::direct_answer; }
+    bool has_replies() const { return replies_ > 0; }
     void finish_shading(Cycle now);
     void start_shading(Cycle now);
     void begin_shade(std::uint32_t index, Cycle now);
@@ -188,13 +199,35 @@ class Cell final : public Client {
     }
 
     /// Places of slots that hold a child; there are none without slots in use.
-    std::size_t slot_places() const { return ray_store_.used() > 0 ? ray_store_.touched() : 0; }
+    std::size_t slot_places() const { return children_ > 0 ? ray_store_.touched() : 0; }
+    /// Something of a slot has changed: its next child may go, or the shading unit may have work.
+    void slot_changed() {
+        feed_at_ = 0;
+        look_to_shade_ = true;
+    }
     /// Bit per place that may hold a ray: inputs and the own ray.
     std::uint32_t occupied() const {
         const std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1);
         return inputs | std::uint32_t(own_ != nullptr) << ray_input_count_;
     }
     bool test_at(std::size_t place, Cycle now);
+    /// The bit of an input or of the own ray in the words below; 0 for a slot's place.
+    std::uint32_t bit_of(std::size_t place) const {
+        return place <= ray_input_count_ ? 1U << unsigned(place) : 0;
+    }
+    /// What waits for room behind this side's output is not tried again before the link says that there is.
+    void park(std::uint32_t bits, std::size_t side) {
+        parked_ |= bits;
+        parked_on_[side] |= bits;
+    }
+    void unpark(Cycle now);
+    std::uint32_t bit_in_test() const { return traversal_.packet ? bit_of(traversal_.place) : 0; }
+    /// The output that a decided ray at this place wants, for fetch_ways(): side and class.
+    struct Way {
+        std::uint8_t side = no_way;
+        std::uint8_t index = 0;
+    };
+    static constexpr std::uint8_t no_way = 255;
 
     // What every step looks at comes first; what few cells or reports need, last.
     Environment& env_;
@@ -205,12 +238,21 @@ class Cell final : public Client {
     /// Bit per buffer that holds anything: ray inputs from 0, answers by side from `answer_bits`.
     std::uint32_t pending_ = 0;
     static constexpr unsigned answer_bits = 16;
+    // Bits as in `pending_`, the own ray's after the ray inputs.
+    std::uint32_t decided_ = 0;  ///< rays whose test is over
+    std::uint32_t parked_ = 0;   ///< rays and answers that wait for room behind an output ...
+    std::array<std::uint32_t, side_count> parked_on_{};  ///< ... by its side; some may have left since
+    std::uint32_t room_made_ = 0;      ///< bit per output: room was made since somebody parked on it
     std::uint32_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
     Traversal traversal_;
     RayPacket* own_ = nullptr;  ///< primary or precast ray on its way out
     Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
     std::uint8_t ray_input_count_ = 0;
     std::uint8_t own_attempts_ = 0;
+    Cycle feed_at_ = never;       ///< cycle from which on a slot may have a child to send
+    bool look_to_shade_ = false;  ///< a slot may have work for the shading unit
+    std::uint16_t children_ = 0;  ///< on their way out of slots
+    std::uint16_t replies_ = 0;   ///< answers of slots and of the shading unit that want to go
     bool replies_first_ = false;  ///< replies go before answers that came in, which went last
     bool answer_moved_ = false;   ///< this cycle: an answer left an input
     bool moved_ = false;          ///< this cycle: something went on, or came home
@@ -220,6 +262,7 @@ class Cell final : public Client {
     std::uint32_t next_test_ = 0;  ///< round robin over places
     Stall cause_ = Stall::none;    ///< why the last attempt to move something failed
     std::array<RayInput, most_ray_inputs> ray_inputs_{};
+    std::array<Way, most_ray_inputs + 1> ways_{};  ///< by place, of inputs and the own ray
     std::array<Link*, side_count> in_{};
     std::array<Link*, side_count> out_{};
     /// Cycles that a message which waits to move is passed over by others; after that it goes before all of
@@ -227,6 +270,7 @@ class Cell final : public Client {
     static constexpr Cycle patience = 65536;
     static constexpr Cycle epoch = patience / 8;  ///< ages are counted in these
     Cycle look_for_overdue_ = patience;           ///< cycle from which on to look for such messages
+    bool overdue_parked_ = false;                 ///< there were some, all of which are parked
     std::uint64_t hash_ = 0;
     TimeOut time_out_;
     RayStore ray_store_;

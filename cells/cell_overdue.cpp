@@ -13,32 +13,41 @@ void Cell::move_overdue(Cycle now) {
     const Cycle began = now / epoch * epoch;
     enum Kind { answer, reply, ray };
     std::vector<std::tuple<Cycle, Kind, std::size_t>> overdue;
-    const auto add = [&](Cycle since, Kind kind, std::size_t index) {
-        if (since < began && began - since > patience) overdue.emplace_back(since, kind, index);
+    overdue_parked_ = false;
+    const auto add = [&](Cycle since, Kind kind, std::size_t index, bool parked) {
+        if (since >= began || began - since <= patience) return;
+        if (parked) {
+            overdue_parked_ = true;  // looked at again when it may move
+        } else {
+            overdue.emplace_back(since, kind, index);
+        }
     };
     const int index = env_.classes.answer;
     for (int side = 0; side < side_count; ++side) {
         if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
+        const bool parked = parked_ >> (answer_bits + unsigned(side)) & 1;
         const Link* in = in_[std::size_t(side)];
         if (in->front(index).kind != Message::Kind::answer) continue;
-        add(in->arrival(index) + env_.costs().route_return, answer, std::size_t(side));
+        add(in->arrival(index) + env_.costs().route_return, answer, std::size_t(side), parked);
     }
-    if (shading_.job == Shading::Job::direct_answer) add(shading_.done, reply, 0);
+    if (shading_.job == Shading::Job::direct_answer) add(shading_.done, reply, 0, false);
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
-        if (ray_store_[i].state == Slot::State::to_answer) add(ray_store_[i].changed, reply, 0);
+        if (ray_store_[i].state == Slot::State::to_answer) add(ray_store_[i].changed, reply, 0, false);
     }
     for (std::size_t place = 0; place < place_count(); ++place) {
         if (nothing_at(place)) continue;
         const RayPacket* packet = packet_at(place);
-        if (packet && packet->stage == RayPacket::Stage::decided) add(packet->decided, ray, place);
+        if (packet && packet->stage == RayPacket::Stage::decided) {
+            add(packet->decided, ray, place, parked_ & bit_of(place));
+        }
     }
     look_for_overdue_ = overdue.empty() ? began + epoch : now + 1;
     std::sort(overdue.begin(), overdue.end());
     for (const auto& [since, kind, at] : overdue) {
         if (kind == answer) {
-            Link& in = *in_[at];
+            const Link& in = *in_[at];
             const int held = in.occupancy(index);
-            move_answer(in, answer_waits_[at], now);
+            move_answer(at, now);
             if (in.occupancy(index) < held) answers_moved_ |= 1U << at;
         } else if (kind == reply) {
             move_replies(now);  // all of them: there are finitely many

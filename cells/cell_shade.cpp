@@ -70,6 +70,7 @@ void Cell::deliver(const Answer& answer, Cycle now) {
                 if (slot.state == Slot::State::waiting && slot.packet->visit.hit.voxel == answer.slot)
                     slot.wait = {now, Stall::shading};
             }
+            slot_changed();
             return;
         case RayKind::reflected:
         case RayKind::refracted:
@@ -82,6 +83,7 @@ void Cell::deliver(const Answer& answer, Cycle now) {
 void Cell::deliver_to_slot(const Answer& answer, Cycle now) {
     Slot& slot = ray_store_[answer.slot];
     slot.wait = {now, Stall::shading};  // counts if it was the last answer missing
+    slot_changed();
     if (answer.ray_kind == RayKind::shadow) {
         const std::uint64_t bit = std::uint64_t(1) << answer.child;
         slot.awaited &= ~bit;
@@ -131,9 +133,14 @@ void Cell::feed_own(Cycle now) {
 
 void Cell::feed_children(Cycle now) {
     if (env_.draining) return;
+    feed_at_ = never;
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         Slot& slot = ray_store_[i];
-        if (slot.state == Slot::State::waiting && !slot.child) slot.child = next_child(slot, i, now);
+        if (slot.state != Slot::State::waiting || slot.child) continue;
+        const std::uint64_t to_ask = slot.to_ask;
+        slot.child = next_child(slot, i, now);
+        children_ += slot.child != nullptr;
+        if (slot.to_ask != to_ask) look_to_shade_ = true;  // nothing left to ask may complete it
     }
 }
 
@@ -164,6 +171,7 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
         if (!slot.send_child[child]) continue;
         if (now < slot.send_at[child]) {
             want(slot.send_at[child]);
+            feed_at_ = std::min(feed_at_, slot.send_at[child]);
             continue;
         }
         slot.send_child[child] = false;
@@ -211,6 +219,8 @@ void Cell::start_shading(Cycle now) {
         begin_shade(shade, now);
     } else if (set_up != none) {
         begin_set_up(set_up, now);
+    } else {
+        look_to_shade_ = false;
     }
 }
 
@@ -275,6 +285,7 @@ void Cell::finish_shading(Cycle now) {
     }
     if (shading_.job == Shading::Job::direct) {
         shading_.job = Shading::Job::direct_answer;  // leaves in move_replies
+        ++replies_;
         return;
     }
     Slot& slot = ray_store_[shading_.slot];
@@ -288,8 +299,10 @@ void Cell::finish_shading(Cycle now) {
         slot.wait = {now, Stall::shading};
     } else {
         slot.state = Slot::State::to_answer;
+        ++replies_;
     }
     slot.changed = now;
+    slot_changed();
     record(now, CellEvent::shade, shading_.slot, slot.packet->ray.id, shading_.slot);
     shading_.job = Shading::Job::idle;
 }
@@ -307,6 +320,7 @@ void Cell::move_replies(Cycle now) {
             ++env_.counters.rays_answered;
             env_.pools.rays.give_back(packet);
             shading_.job = Shading::Job::idle;
+            --replies_;
             went = true;
         } else {
             stall(direct_wait_, cause_, answer.id, now);
@@ -327,6 +341,7 @@ void Cell::move_replies(Cycle now) {
         settle(wait, answer.id, now);
         ++env_.counters.rays_answered;
         release_slot(i, now);
+        --replies_;
         went = true;
     }
     if (waits) blocked_ = true;

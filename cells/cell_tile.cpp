@@ -3,27 +3,13 @@
 namespace raycell {
 namespace {
 
-/// A cell that has not run for a while is in no cache, and which cells run next is known: so their memory is
-/// asked for some cells ahead, and that of their links once the cells have come.
-constexpr std::size_t cells_ahead = 8;
-constexpr std::size_t links_ahead = 4;
-
-void fetch(const Cell& cell) {
-    constexpr std::size_t line = 64;
-    constexpr std::size_t lines = 6;  // what every step looks at comes first in a cell
-    const char* at = reinterpret_cast<const char*>(&cell);
-    for (std::size_t i = 0; i < lines; ++i) __builtin_prefetch(at + i * line, 1);
-}
-
-void fetch_links(const Cell& cell) {
-    for (int side = 0; side < side_count; ++side) {
-        for (const Link* link : {cell.input(Side(side)), cell.output(Side(side))}) {
-            const char* at = reinterpret_cast<const char*>(link);
-            __builtin_prefetch(at, 1);
-            __builtin_prefetch(at + sizeof(Link) - 1, 1);
-        }
-    }
-}
+// A cell that has not run for a while is in no cache, and which cells run next is known. How many cells ahead
+// each part is asked for; each step reads what the one before it brought.
+constexpr std::size_t cells_ahead = 16;
+constexpr std::size_t links_ahead = 12;
+constexpr std::size_t buffers_ahead = 8;
+constexpr std::size_t messages_ahead = 4;
+constexpr std::size_t ways_ahead = 2;
 
 }  // namespace
 
@@ -38,8 +24,11 @@ void CellTile::run() {
     Scheduler& scheduler = environment_.scheduler;
     const Cycle now = scheduler.now();
     for (std::size_t i = 0; i < active_.size(); ++i) {
-        if (i + cells_ahead < active_.size()) fetch(*active_[i + cells_ahead]);
-        if (i + links_ahead < active_.size()) fetch_links(*active_[i + links_ahead]);
+        if (i + cells_ahead < active_.size()) active_[i + cells_ahead]->fetch();
+        if (i + links_ahead < active_.size()) active_[i + links_ahead]->fetch_links();
+        if (i + buffers_ahead < active_.size()) active_[i + buffers_ahead]->fetch_buffers();
+        if (i + messages_ahead < active_.size()) active_[i + messages_ahead]->fetch_messages();
+        if (i + ways_ahead < active_.size()) active_[i + ways_ahead]->fetch_ways();
         const Cycle next = active_[i]->step(now);
         if (next != never) scheduler.wake(*active_[i], next);
     }

@@ -74,9 +74,14 @@ struct Environment {
     MessageBits bits;
     LinkCycles cycles;  ///< for `bits`: no division in every hop
     BufferClasses classes;
+    /// Cycles from an answer's arrival until its cell need look at it; 0 where it may stand in a ray's way.
+    int answer_routing;
     const ArrayShare share;
     Scheduler& scheduler;
     Picture& picture;
+    /// Per pixel, for Pixel::hops: apart from the picture, because every hop of a traced ray comes here and a
+    /// picture is larger than a cache.
+    std::vector<std::uint32_t> pixel_hops;
     MessagePools pools;
     Counters counters;
     Ledger ledger;
@@ -98,9 +103,11 @@ struct Environment {
           cycles{cycles_for(bits.ray), cycles_for(bits.shadow_ray), cycles_for(bits.intensity),
                  cycles_for(bits.verdict)},
           classes(buffer_classes(machine.networks)),
+          answer_routing(classes.count > 1 ? int(machine.costs.route_return) : 0),
           share(part ? *part : ArrayShare{0, scene.frame.height, nullptr, nullptr}),
           scheduler(s),
-          picture(p) {}
+          picture(p),
+          pixel_hops(p.pixels.size()) {}
 
     int width() const { return context.scene.frame.width; }
     int height() const { return context.scene.frame.height; }

@@ -9,6 +9,7 @@ namespace raycell {
 
 Link::Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used)
     : scheduler_(scheduler), depth_(std::uint16_t(depth)), classes_(std::uint8_t(classes)) {
+    static_assert(sizeof(Buffer) == 64);
     if (depth < 1 || depth > most_depth || classes > most_classes)
         throw std::invalid_argument("a link of " + std::to_string(depth) +
                                     " messages a buffer; expected 1 to " + std::to_string(most_depth));
@@ -17,12 +18,14 @@ Link::Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used)
     for (int index = 0; index < classes; ++index) {
         if (used >> index & 1) places_[std::size_t(index)] = buffers++;
     }
-    buffers_ = std::make_unique<Buffer[]>(buffers);
+    if (buffers > own_buffers) more_buffers_ = std::make_unique<Buffer[]>(buffers - own_buffers);
 }
 
 std::size_t Link::bytes(std::uint32_t used) {
-    constexpr std::size_t allocation = 16;  // what the heap adds
-    return sizeof(Link) + allocation + std::size_t(__builtin_popcount(used)) * sizeof(Buffer);
+    constexpr std::size_t allocation = 64;  // what the heap adds to lines
+    const auto buffers = std::size_t(__builtin_popcount(used));
+    if (buffers <= own_buffers) return sizeof(Link);
+    return sizeof(Link) + allocation + (buffers - own_buffers) * sizeof(Buffer);
 }
 
 Link::Extras& Link::extras() {
@@ -70,9 +73,10 @@ Link::Room Link::room(int index) const {
 /// Room for more messages, up to `depth`; most buffers of a deep machine never fill.
 void Link::Buffer::grow(int depth) {
     const auto larger = std::uint16_t(std::min(depth, 2 * int(capacity)));
-    auto entries = std::make_unique<Entry[]>(larger);
+    auto* entries = new Entry[larger];
     for (std::uint32_t i = 0; i < count; ++i) entries[i] = at(i);
-    ring = std::move(entries);
+    if (capacity > 1) delete[] ring;
+    ring = entries;
     head = 0;
     capacity = larger;
 }
@@ -82,6 +86,11 @@ void Link::watch(int index, std::uint32_t* pending, std::uint32_t bits) {
     Buffer& b = buffer(index);
     b.pending_bits = bits;
     if (b.count > 0) *pending |= bits;
+}
+
+void Link::tell_room(std::uint32_t* room_made, std::uint32_t bits) {
+    room_made_ = room_made;
+    room_bits_ = bits;
 }
 
 Link::ClassStatistics Link::statistics(int index) const {

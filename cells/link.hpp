@@ -21,8 +21,9 @@ class LinkOut : virtual public sc_core::sc_interface {
     /// the cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is
     /// woken in the cycle after room was made.
     virtual bool can_send(int index, Cycle& retry) = 0;
-    /// Starts a message; it is visible at the far end after its link cycles.
-    virtual void send(int index, const Message& message, int cycles) = 0;
+    /// Starts a message; it is visible at the far end after its link cycles. The receiver is woken `later` cycles
+    /// after that: for messages which it does nothing with before.
+    virtual void send(int index, const Message& message, int cycles, int later = 0) = 0;
 };
 
 /// What the receiving side sees, for the ports of modules.
@@ -39,8 +40,9 @@ class LinkIn : virtual public sc_core::sc_interface {
 
 /// The channel. Writes and reads of a cycle show in the next one, so the order in which cells run does not
 /// matter. Final, so that a cell's calls need no table; an array has four of them per cell, so what few links
-/// have is kept apart, and classes that a link never carries have no buffer.
-class Link final : public LinkOut, public LinkIn {
+/// have is kept apart, and classes that a link never carries have no buffer. Laid out by cache lines, which are
+/// what a hop costs in a large array: what every hop needs in the first, then a line for each buffer.
+class alignas(64) Link final : public LinkOut, public LinkIn {
   public:
     struct ClassStatistics {
         std::uint64_t sent = 0;
@@ -76,7 +78,7 @@ class Link final : public LinkOut, public LinkIn {
     /// What can_send() would say, without asking to be woken: for whoever watches.
     enum class Room : std::uint8_t { free, wires_busy, full };
     Room room(int index) const;
-    void send(int index, const Message& message, int cycles) override;
+    void send(int index, const Message& message, int cycles, int later = 0) override;
     Message front(int index) const override {
         const Buffer* buffer = find(index);
         if (!buffer || buffer->count == 0) return {};
@@ -100,6 +102,11 @@ class Link final : public LinkOut, public LinkIn {
     /// Asks the link to keep `bits` set in `pending` while the buffer of a class holds anything, on the wires
     /// or arrived: so a cell need not look into empty buffers. One `pending` for all classes.
     void watch(int index, std::uint32_t* pending, std::uint32_t bits);
+    /// Asks the link to set `bits` in `room_made` when a sender that can_send() has refused for want of room is
+    /// woken: until then it need not ask again.
+    void tell_room(std::uint32_t* room_made, std::uint32_t bits);
+    /// Whether a sender was refused for want of room and none has been made since.
+    bool sender_waits(int index) const { return buffer(index).sender_waits; }
     int occupancy(int index) const override {
         const Buffer* buffer = find(index);
         return buffer ? buffer->count : 0;
@@ -126,11 +133,18 @@ class Link final : public LinkOut, public LinkIn {
     /// Bytes of an unwatched link with empty buffers.
     static std::size_t bytes(std::uint32_t used);
 
+    // Ask for memory ahead of a hop: the link's own first line, which the buffer's place stands in, then the
+    // buffer's.
+    void fetch() const { __builtin_prefetch(this, 1); }
+    void fetch_buffer(int index) const { __builtin_prefetch(&buffer(index), 1); }
+
   private:
     using Entry = Held;
-    struct Buffer {
-        Entry first;                    ///< all there is at depth 1
-        std::unique_ptr<Entry[]> ring;  ///< once more than one has been needed
+    struct alignas(64) Buffer {
+        union {
+            Entry first;  ///< all there is at depth 1
+            Entry* ring;  ///< of `capacity`, once more than one has been needed
+        };
         Cycle last_pop = never;
         std::uint64_t sent = 0;
         std::uint64_t occupied = 0;  ///< cycles of pops less cycles of sends: needs no note of when
@@ -142,8 +156,14 @@ class Link final : public LinkOut, public LinkIn {
         std::uint16_t peak = 0;
         bool sender_waits = false;
 
-        Entry& at(std::uint32_t place) { return ring ? ring[wrapped(place)] : first; }
-        const Entry& at(std::uint32_t place) const { return ring ? ring[wrapped(place)] : first; }
+        Buffer() : first() {}
+        ~Buffer() {
+            if (capacity > 1) delete[] ring;
+        }
+        Buffer(const Buffer&) = delete;
+        Buffer& operator=(const Buffer&) = delete;
+        Entry& at(std::uint32_t place) { return capacity > 1 ? ring[wrapped(place)] : first; }
+        const Entry& at(std::uint32_t place) const { return capacity > 1 ? ring[wrapped(place)] : first; }
         std::uint32_t wrapped(std::uint32_t place) const {
             const std::uint32_t sum = head + place;
             return sum < capacity ? sum : sum - capacity;
@@ -166,26 +186,35 @@ class Link final : public LinkOut, public LinkIn {
     static constexpr std::uint8_t no_buffer = 255;
     const Buffer* find(int index) const {
         const std::uint8_t place = places_[std::size_t(index)];
-        return place == no_buffer ? nullptr : &buffers_[place];
+        return place == no_buffer ? nullptr : &buffer_at(place);
     }
-    Buffer& buffer(int index) { return buffers_[places_[std::size_t(index)]]; }
-    const Buffer& buffer(int index) const { return buffers_[places_[std::size_t(index)]]; }
+    Buffer& buffer_at(std::uint8_t place) {
+        return place < own_buffers ? buffers_[place] : more_buffers_[place - own_buffers];
+    }
+    const Buffer& buffer_at(std::uint8_t place) const { return const_cast<Link*>(this)->buffer_at(place); }
+    Buffer& buffer(int index) { return buffer_at(places_[std::size_t(index)]); }
+    const Buffer& buffer(int index) const { return buffer_at(places_[std::size_t(index)]); }
     Extras& extras();
     std::uint32_t stalled();
     void tell_sent(int index, const Message& message, int cycles);
     void tell_popped(int index);
 
     Scheduler& scheduler_;
-    std::unique_ptr<Buffer[]> buffers_;
     Cycle wires_free_ = 0;
-    Client* source_ = nullptr;
-    Client* sink_ = nullptr;
-    std::uint32_t* pending_ = nullptr;  ///< the sink's
-    std::unique_ptr<Extras> extras_;
-    std::uint64_t busy_cycles_ = 0;
     std::uint16_t depth_;
     std::uint8_t classes_;
     std::array<std::uint8_t, most_classes> places_;  ///< of the classes' buffers
+    Client* sink_ = nullptr;
+    std::uint32_t* pending_ = nullptr;  ///< the sink's
+    std::unique_ptr<Extras> extras_;
+    // Second line.
+    Client* source_ = nullptr;
+    std::uint32_t* room_made_ = nullptr;  ///< the source's
+    std::uint64_t busy_cycles_ = 0;
+    std::uint32_t room_bits_ = 0;
+    static constexpr std::size_t own_buffers = 3;  ///< all that a link between cells has, but with `quadrant`
+    std::unique_ptr<Buffer[]> more_buffers_;
+    std::array<Buffer, own_buffers> buffers_;
 };
 
 // What a cell does with its links in every hop.
@@ -209,7 +238,7 @@ inline bool Link::can_send(int index, Cycle& retry) {
     return true;
 }
 
-inline void Link::send(int index, const Message& message, int cycles) {
+inline void Link::send(int index, const Message& message, int cycles, int later) {
     Buffer& b = buffer(index);
     const Cycle now = scheduler_.now();
     if (b.count == b.capacity) b.grow(depth_);
@@ -224,7 +253,9 @@ inline void Link::send(int index, const Message& message, int cycles) {
     b.peak = std::max(b.peak, std::uint16_t(b.count + b.still_seen(now)));
     busy_cycles_ += std::uint64_t(cycles);
     if (extras_) tell_sent(index, message, cycles);
-    if (sink_) scheduler_.wake(*sink_, wires_free_);
+    if (!sink_) return;
+    scheduler_.wake(*sink_, wires_free_ + Cycle(later));
+    if (later > 0) scheduler_.sample_at(wires_free_, wires_free_ + Cycle(later));
 }
 
 inline void Link::pop(int index) {
@@ -242,6 +273,7 @@ inline void Link::pop(int index) {
     ++b.popped_now;
     if (b.sender_waits) {
         b.sender_waits = false;
+        if (room_made_) *room_made_ |= room_bits_;
         if (source_) scheduler_.wake(*source_, now + 1);
     }
 }

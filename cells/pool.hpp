@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
+#include <memory>
 #include <vector>
+
+#include "cells/stable_array.hpp"
 
 namespace raycell {
 
@@ -12,17 +14,28 @@ template <typename T>
 class Pool {
   public:
     T* take() {
-        if (free_.empty()) return &all_.emplace_back();
+        if (free_.empty()) return make();
         T* object = free_.back();
         free_.pop_back();
         *object = T();
         return object;
     }
     void give_back(T* object) { free_.push_back(object); }
-    std::size_t in_use() const { return all_.size() - free_.size(); }
+    std::size_t in_use() const { return made_ - free_.size(); }
 
   private:
-    std::deque<T> all_;
+    static constexpr std::size_t block = StableArray<T>::page / sizeof(T);  // objects
+    T* make() {
+        if (made_ % block == 0) {
+            blocks_.push_back(std::make_unique<StableArray<T>>());
+            blocks_.back()->reserve(block);
+        }
+        ++made_;
+        return &blocks_.back()->emplace_back();
+    }
+
+    std::vector<std::unique_ptr<StableArray<T>>> blocks_;
+    std::size_t made_ = 0;
     std::vector<T*> free_;
 };
 

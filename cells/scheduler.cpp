@@ -1,5 +1,7 @@
 #include "cells/scheduler.hpp"
 
+#include <algorithm>
+
 namespace raycell {
 
 Scheduler::Scheduler(sc_core::sc_module_name name, sc_core::sc_time period)
@@ -48,6 +50,7 @@ void Scheduler::hold_meeting() {
 
 Cycle Scheduler::next_busy() const {
     Cycle next = far_.empty() ? never : far_.begin()->first;
+    if (!samples_.empty()) next = std::min(next, *samples_.begin());
     if (waiting_ > 0) {
         for (Cycle c = now_ + 1; c < now_ + slots && c < next; ++c) {
             if (!wheel_[c % slots].empty()) return c;
@@ -67,7 +70,9 @@ void Scheduler::tick() {
     if (sampler_) sampler_(now_);
     now_ = kernel_now_ = scheduled_;
     scheduled_ = never;
-    if (watch_ && !watch_(watch_argument_, now_)) {
+    const bool acts = !wheel_[now_ % slots].empty() || far_.count(now_) > 0;
+    if (!samples_.empty()) samples_.erase(now_);
+    if (acts && watch_ && !watch_(watch_argument_, now_)) {
         stopped_ = true;
         return;
     }
@@ -79,7 +84,10 @@ void Scheduler::tick() {
         running_.insert(running_.end(), far->second.begin(), far->second.end());
         far_.erase(far);
     }
-    for (Client* client : running_) {
+    constexpr std::size_t ahead = 8;  // a client that has not run for a while is in no cache
+    for (std::size_t i = 0; i < running_.size(); ++i) {
+        if (i + ahead < running_.size()) __builtin_prefetch(running_[i + ahead], 1);
+        Client* client = running_[i];
         if (client->woken_ == now_) continue;
         client->woken_ = now_;
         ++activations_;

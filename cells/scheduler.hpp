@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <systemc>
 #include <vector>
 
@@ -65,6 +66,14 @@ class Scheduler : public sc_core::sc_module {
     /// still.
     void set_sampler(std::function<void(Cycle)> sampler) { sampler_ = std::move(sampler); }
 
+    /// What can be seen changes in `cycle`, though nobody acts before `acts`: if there is a sampler, it is called
+    /// for that cycle too. Nothing else happens in it, the watch is not called: sampling changes no run.
+    void sample_at(Cycle cycle, Cycle acts) {
+        if (!sampler_ || acts > limit_) return;
+        samples_.insert(cycle);
+        if (cycle < scheduled_) schedule(cycle);
+    }
+
     /// Puts the time of a run that has stopped, without running anybody: for looking at it as it would be
     /// later.
     void set_now(Cycle now) { now_ = now; }
@@ -124,6 +133,7 @@ class Scheduler : public sc_core::sc_module {
     Cycle (*meet_)(void*, Cycle) = nullptr;
     void* meet_argument_ = nullptr;
     std::function<void(Cycle)> sampler_;
+    std::set<Cycle> samples_;  ///< cycles to come of sample_at()
 };
 
 }  // namespace raycell

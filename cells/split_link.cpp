@@ -139,7 +139,7 @@ void SplitLinks::clear(MessagePools& pools) {
     out_.resize(prefix_);
 }
 
-void SplitLinks::deliver(const std::byte* data, std::size_t size, MessagePools& pools) {
+void SplitLinks::deliver(const std::byte* data, std::size_t size, MessagePools& pools, int answers_later) {
     ByteReader records(data, size);
     while (!records.at_end()) {
         const auto word = records.get<std::uint32_t>();
@@ -169,7 +169,7 @@ void SplitLinks::deliver(const std::byte* data, std::size_t size, MessagePools& 
                 const auto record = records.get<AnswerRecord>();
                 Answer* answer = pools.answers.take();
                 *answer = record.answer;
-                link.send(index, Message(answer), int(record.cycles));
+                link.send(index, Message(answer), int(record.cycles), answers_later);
                 break;
             }
             case Record::trapeze: {

@@ -43,9 +43,10 @@ class SplitLinks {
     /// What went out is now the other rank's: gives back what carried it, and empties out() but its prefix.
     void clear(MessagePools& pools);
 
-    /// What the other rank's out() held behind its prefix, in the cycle in which it was sent. Throws
-    /// std::logic_error for what no rank of the same machine can have sent.
-    void deliver(const std::byte* data, std::size_t size, MessagePools& pools);
+    /// What the other rank's out() held behind its prefix, in the cycle in which it was sent. Receivers of
+    /// answers are woken `answers_later` cycles after their arrival (Link::send()). Throws std::logic_error
+    /// for what no rank of the same machine can have sent.
+    void deliver(const std::byte* data, std::size_t size, MessagePools& pools, int answers_later = 0);
 
   private:
     class End : public LinkObserver {

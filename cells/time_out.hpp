@@ -35,6 +35,10 @@ class TimeOut {
     }
     /// Since when the cell waits; `never` if it doesn't.
     Cycle since() const { return since_; }
+    /// Asks for the memory that the end of a wait will touch.
+    void fetch() const {
+        if (since_ != never) __builtin_prefetch(ended_.get(), 1);
+    }
 
   private:
     using Counts = std::array<std::uint32_t, most_log - least_log + 1>;

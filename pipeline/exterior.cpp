@@ -136,11 +136,11 @@ Cycle Exterior::step(Cycle now) {
             Answer* answer = env.pools.answers.take();
             *answer = processor.answer;
             link->send(env.classes.answer, Message(answer),
-                       env.cycles_for(intensity ? env.bits.intensity : env.bits.verdict));
+                       env.cycles_for(intensity ? env.bits.intensity : env.bits.verdict), env.answer_routing);
             ++env.counters.rays_answered;
             ++env.counters.answers_sent;
             ++env.counters.rays.return_hops;
-            if (env.phase == Phase::trace) ++env.picture.pixels[std::size_t(processor.answer.id >> 32)].hops;
+            if (env.phase == Phase::trace) ++env.pixel_hops[std::size_t(processor.answer.id >> 32)];
         }
         processor.busy = false;
         --working_;

@@ -227,7 +227,7 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     check_conservation(result.in_flight, going());
     collect(result);
     if (going() && result.storage.overflowed > 0) result.verdict = Verdict::capacity;
-    result.picture = ranks_ ? joined_picture() : picture_;
+    result.picture = whole_picture();
     result.ended = scheduler_.now();
     return result;
 }

@@ -158,7 +158,7 @@ class Machine : public sc_core::sc_module {
     void join_activity(Activity& activity) const;
     std::uint64_t joined_schedule_hash() const;
     void join_ledger(Ledger& ledger) const;
-    Picture joined_picture() const;
+    Picture whole_picture() const;
     bool kick_finds_work();
     bool buffers_empty() const;
 

@@ -84,7 +84,13 @@ void Machine::join_ledger(Ledger& ledger) const {
 
 /// Of its own rows a rank has what came home. Hops are counted, and first hits recorded, wherever they
 /// happen: by any rank for any pixel, a first hit by one alone.
-Picture Machine::joined_picture() const {
+Picture Machine::whole_picture() const {
+    const std::vector<std::uint32_t>& hops = environment_.pixel_hops;
+    if (!ranks_) {
+        Picture picture = picture_;
+        for (std::size_t i = 0; i < hops.size(); ++i) picture.pixels[i].hops = hops[i];
+        return picture;
+    }
     struct Abroad {
         std::uint64_t pixel;
         double depth;
@@ -100,13 +106,15 @@ Picture Machine::joined_picture() const {
     std::vector<Abroad> abroad;
     for (std::size_t i = 0; i < mine.size(); ++i) {
         const Pixel& p = mine[i];
-        if ((i >= first && i < end) || (p.hops == 0 && p.postponed == 0 && p.polygon == no_polygon)) continue;
-        abroad.push_back({i, p.depth, p.normal, p.polygon, p.postponed, p.hops});
+        if ((i >= first && i < end) || (hops[i] == 0 && p.postponed == 0 && p.polygon == no_polygon))
+            continue;
+        abroad.push_back({i, p.depth, p.normal, p.polygon, p.postponed, hops[i]});
     }
     ByteWriter bytes;
     bytes.put(std::uint64_t(first));
-    bytes.put_all(
-        std::vector<Pixel>(mine.begin() + std::ptrdiff_t(first), mine.begin() + std::ptrdiff_t(end)));
+    std::vector<Pixel> home(mine.begin() + std::ptrdiff_t(first), mine.begin() + std::ptrdiff_t(end));
+    for (std::size_t i = first; i < end; ++i) home[i - first].hops = hops[i];
+    bytes.put_all(home);
     bytes.put_all(abroad);
     const std::vector<Bytes> all = ranks_->gather(bytes.take());
     Picture picture = all.empty() ? Picture() : Picture(picture_.width, picture_.height);

@@ -182,8 +182,7 @@ void Machine::collect_time_outs(RunResult& result) const {
     for (const auto& knot : result.waits.knots()) {
         missed += sum(std::uint64_t(std::count_if(knot.begin(), knot.end(), seen))) == 0;
     }
-    const Cell& first_cell = array_.cells().front();
-    const std::size_t offset = index(first_cell.x(), first_cell.y());
+    const std::size_t offset = index(0, environment_.share.first);
     struct Sums {
         TimeOutResult all;
         Cycle first = never;

@@ -94,7 +94,8 @@ RankProgress RankExchange::meet(RankProgress mine, Environment& environment) {
     for (std::size_t i = 0; i < peers_.size(); ++i) {
         peers_[i].links->clear(environment.pools);
         peers_[i].links->deliver(parcels_[i].in.data() + sizeof(RankProgress),
-                                 parcels_[i].size - sizeof(RankProgress), environment.pools);
+                                 parcels_[i].size - sizeof(RankProgress), environment.pools,
+                                 environment.answer_routing);
     }
     // Nothing that came can wake anybody before the next cycle: if that one is run anyway, all is known.
     if (two && agreed_.next == scheduler.now() + 1) return agreed_;

@@ -1,0 +1,82 @@
+// Asking for memory ahead: in a large array a hop costs what the caches miss, not what it computes.
+#include <algorithm>
+
+#include "cells/cell.hpp"
+
+namespace raycell {
+
+/// What every step looks at: it comes first in a cell.
+void Cell::fetch() const {
+    constexpr std::size_t line = 64;
+    constexpr std::size_t lines = 7;
+    const char* at = reinterpret_cast<const char*>(this);
+    for (std::size_t i = 0; i < lines; ++i) __builtin_prefetch(at + i * line, 1);
+    __builtin_prefetch(&store_);
+}
+
+void Cell::fetch_links() const {
+    time_out_.fetch();
+    for (std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1); inputs; inputs &= inputs - 1) {
+        const auto place = std::size_t(__builtin_ctz(inputs));
+        if (!(parked_ >> place & 1)) link_of(place).fetch();
+    }
+    for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
+        in_[std::size_t(__builtin_ctz(sides))]->fetch();
+    }
+    for (std::uint32_t rays = (decided_ | bit_in_test()) & ~parked_; rays; rays &= rays - 1) {
+        const Way& way = ways_[std::size_t(__builtin_ctz(rays))];
+        if (way.side != no_way && out_[way.side]) out_[way.side]->fetch();
+    }
+}
+
+void Cell::fetch_buffers() const {
+    for (std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1); inputs; inputs &= inputs - 1) {
+        const auto place = std::size_t(__builtin_ctz(inputs));
+        if (!(parked_ >> place & 1)) link_of(place).fetch_buffer(ray_inputs_[place].index);
+    }
+    for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
+        in_[std::size_t(__builtin_ctz(sides))]->fetch_buffer(env_.classes.answer);
+    }
+    for (std::uint32_t rays = (decided_ | bit_in_test()) & ~parked_; rays; rays &= rays - 1) {
+        const Way& way = ways_[std::size_t(__builtin_ctz(rays))];
+        if (way.side != no_way && out_[way.side]) out_[way.side]->fetch_buffer(way.index);
+    }
+}
+
+void Cell::fetch_messages() const {
+    constexpr std::size_t line = 64;
+    const auto fetch_object = [](const void* object, std::size_t bytes) {
+        const char* at = static_cast<const char*>(object);
+        for (std::size_t i = 0; i < bytes; i += line) __builtin_prefetch(at + i, 1);
+    };
+    for (std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1); inputs; inputs &= inputs - 1) {
+        const auto place = std::size_t(__builtin_ctz(inputs));
+        if (parked_ >> place & 1) continue;
+        const RayPacket* packet = packet_at(place);
+        if (!packet) continue;
+        fetch_object(packet, sizeof(RayPacket));
+        if (traversal_.packet || decided_ >> place & 1) continue;
+        // It will be tested: the depths of the first voxels, which it is compared with.
+        constexpr std::size_t most_voxels = 6;
+        const std::size_t voxels = std::min(store_.voxels.size(), most_voxels);
+        for (std::size_t i = 0; i < voxels; ++i) __builtin_prefetch(&store_.voxels[i].near);
+    }
+    for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
+        const Message* head = in_[std::size_t(__builtin_ctz(sides))]->head(env_.classes.answer);
+        if (head && head->kind == Message::Kind::answer) fetch_object(head->answer, sizeof(Answer));
+    }
+}
+
+/// Of answers, which only their destination tells.
+void Cell::fetch_ways() const {
+    for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
+        const Message* head = in_[std::size_t(__builtin_ctz(sides))]->head(env_.classes.answer);
+        if (!head || head->kind != Message::Kind::answer || local(*head->answer)) continue;
+        const Link& out = *out_[std::size_t(route(*head->answer))];
+        out.fetch();
+        out.fetch_buffer(env_.classes.answer);
+        __builtin_prefetch(&env_.pixel_hops[std::size_t(head->answer->id >> 32)], 1);
+    }
+}
+
+}  // namespace raycell
