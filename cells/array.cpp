@@ -3,20 +3,6 @@
 #include <algorithm>
 
 namespace raycell {
-namespace {
-
-/// Classes that a link over this side carries.
-std::uint32_t used_classes(const BufferClasses& classes, Side side) {
-    const bool horizontal = side == Side::east || side == Side::west;
-    std::uint32_t used = 0;
-    for (int index = 0; index < classes.count; ++index) {
-        if (classes.used(index, horizontal, side)) used |= 1U << index;
-    }
-    return used;
-}
-
-}  // namespace
-
 bool Granularity::is_module(int x, int y) const {
     return every_cell || std::any_of(detail.begin(), detail.end(),
                                      [&](const CellRange& range) { return range.contains(x, y); });
@@ -80,9 +66,8 @@ void Array::make_link(int x, int y, Side side) {
     const int to_x = x + step_x(side);
     const int to_y = y + step_y(side);
     if (to_x < 0 || to_x >= environment_.width() || to_y < 0 || to_y >= environment_.height()) return;
-    Link& link =
-        links_.emplace_back(environment_.scheduler, environment_.classes.count,
-                            environment_.machine.buffer_depth, used_classes(environment_.classes, side));
+    Link& link = links_.emplace_back(environment_.scheduler, environment_.classes.count,
+                                     environment_.machine.buffer_depth, environment_.classes.used_over(side));
     ways_.push_back(std::uint32_t(index(x, y)) * side_count + std::uint32_t(side));
     if (environment_.machine.stall > 0) {
         environment_.stall(link, "cell_" + std::to_string(x) + "_" + std::to_string(y) + "." + name_of(side));
@@ -159,7 +144,7 @@ double Array::bytes(const Granularity& granularity, int width, int height, const
     // Links over the border, which a tile's array may not have, are counted.
     double each = sizeof(Cell);
     for (int side = 0; side < side_count; ++side) {
-        each += Link::bytes(used_classes(classes, Side(side))) + sizeof(std::uint32_t);
+        each += Link::bytes(classes.used_over(Side(side))) + sizeof(std::uint32_t);
     }
     constexpr double module = 8.3e3;  // measured: ports, process and event of SystemC's
     return each * width * height + module * double(granularity.modules(width, height));
