@@ -172,17 +172,26 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     }
 }
 
-RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
-    progress_ = std::move(progress);
-    RunResult result;
-    const PictureSettings& settings = environment_.context.settings;
+void Machine::load(RunResult& result) {
+    if (preloaded_) {
+        start_loaded(result);
+        return;
+    }
     activity_.begin(scheduler_.now(), environment_.counters, false);
     run_phase(Phase::load, result);
     activity_.finish(scheduler_.now() + 1, environment_.counters);
     result.load_activity = activity_.activity();
-    activity_.begin(scheduler_.now() + 1, environment_.counters, true);
     // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
     result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
+    if (on_loaded_ && result.verdict == Verdict::completed) on_loaded_(loaded(result));
+}
+
+RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
+    progress_ = std::move(progress);
+    RunResult result;
+    const PictureSettings& settings = environment_.context.settings;
+    load(result);
+    activity_.begin(scheduler_.now() + 1, environment_.counters, true);
     for (Link& link : array_.links()) link.reset_statistics();
     if (environment_.context.traffic) {
         for (Cell& cell : array_.cells()) {

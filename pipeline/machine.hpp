@@ -9,6 +9,7 @@
 
 #include "cells/array.hpp"
 #include "cells/wait_map.hpp"
+#include "model/array_file.hpp"
 #include "pipeline/activity.hpp"
 #include "pipeline/distribution.hpp"
 #include "pipeline/exterior.hpp"
@@ -103,6 +104,15 @@ class Machine : public sc_core::sc_module {
     /// there is so far; for signal handlers. Null: nothing interrupts.
     void interrupt_by(const volatile std::sig_atomic_t* flag) { interrupt_ = flag; }
 
+    /// Instead of loading, starts with what an equal machine had loaded: its loading_key() must be this
+    /// one's. The schedule goes on from the cycle in which that one's loading ended. Not with random stalls,
+    /// whose draws go on.
+    void use_loaded(LoadedArray array) { preloaded_ = std::make_unique<LoadedArray>(std::move(array)); }
+    /// Called with the loaded array, once it is.
+    void set_on_loaded(std::function<void(const LoadedArray&)> on_loaded) {
+        on_loaded_ = std::move(on_loaded);
+    }
+
     Array& array() { return array_; }
     Environment& environment() { return environment_; }
 
@@ -127,6 +137,11 @@ class Machine : public sc_core::sc_module {
 
   private:
     void bind_pipeline();
+    void load(RunResult& result);
+    // machine_loaded.cpp
+    LoadedArray loaded(RunResult& result);
+    void start_loaded(RunResult& result);
+    void visit_loading(std::vector<std::uint64_t>& numbers, bool taking, RunResult& result);
     void run_phase(Phase phase, RunResult& result);
     bool phase_complete() const;
     void judge(RunResult& result);
@@ -159,6 +174,8 @@ class Machine : public sc_core::sc_module {
     Cycle drain_start_ = never;
     const volatile std::sig_atomic_t* interrupt_ = nullptr;
     bool interrupted_ = false;
+    std::unique_ptr<LoadedArray> preloaded_;
+    std::function<void(const LoadedArray&)> on_loaded_;
 };
 
 }  // namespace raycell

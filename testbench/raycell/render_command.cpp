@@ -11,6 +11,7 @@
 #include "model/truth/exterior.hpp"
 #include "model/truth/truth.hpp"
 #include "model/untimed.hpp"
+#include "testbench/raycell/array_files.hpp"
 #include "testbench/raycell/cells_csv.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
@@ -73,6 +74,7 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     const std::uint64_t after = memory_bytes();
     run.bytes_per_cell = after > before ? (after - before) / cells : 0;
     run.wall_build = seconds_since(start);
+    ArrayFiles arrays(options, scene, machine);
     CellObserverList observers;
     const std::unique_ptr<RayWatch> watch = watch_of(options, std::cout);
     if (watch) observers.add(*watch);
@@ -174,6 +176,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
     watch_of(options, std::cout);  // refuses what can't be watched before anything is done
     check_probes(options);
     check_golden(options);
+    check_arrays(options);
     const auto start = Clock::now();
     const CellScene scene = read_and_place(options);
     for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
@@ -232,6 +235,7 @@ Command add_render_command(CLI::App& program) {
     add_scene_options(*table, *options);
     add_machine_options(*table, *options);
     add_watch_options(*table, *options);
+    add_array_options(*table, *options);
     add_probe_options(*table, *options);
     return {app, [options, table] { return run(*options, *table); }};
 }
