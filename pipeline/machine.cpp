@@ -129,20 +129,45 @@ bool Machine::watch(void* self, Cycle now) {
     }
     constexpr std::uint64_t calls_between_reports = 4096;
     if (machine.progress_ && ++machine.watch_calls_ % calls_between_reports == 0) {
-        constexpr const char* names[] = {"load", "precast", "trace"};
-        const std::uint64_t cells = std::uint64_t(env.width()) * std::uint64_t(env.height());
-        machine.progress_(
-            {names[int(env.phase)], now,
-             env.phase == Phase::load ? env.counters.cells_loaded : env.counters.pixels_done, cells,
-             env.counters.load_hops + env.counters.rays.ray_hops + env.counters.rays.return_hops});
+        machine.tell_progress(now);
     }
     return true;
 }
 
+/// The end-of-scene marks that count loaded cells come last, so they say nothing of how far loading is.
+double Machine::phase_share() const {
+    const Counters& c = environment_.counters;
+    const auto share = [](std::uint64_t done, std::uint64_t all) {
+        return all > 0 ? double(done) / double(all) : 0.0;
+    };
+    switch (environment_.phase) {
+        case Phase::load:
+            return share(geometry_.polygons_taken(), environment_.context.scene.polygons.size());
+        case Phase::precast:
+            return share(c.rays_answered + c.rays_silent, precast_rays_);
+        case Phase::trace:
+            return share(c.pixels_done, array_.cells().size());
+    }
+    return 0;
+}
+
+void Machine::tell_progress(Cycle now) const {
+    constexpr const char* names[] = {"load", "precast", "trace"};
+    const Counters& c = environment_.counters;
+    const Phase phase = environment_.phase;
+    progress_({names[int(phase)], now, phase == Phase::load ? c.cells_loaded : c.pixels_done,
+               array_.cells().size(), c.load_hops + c.rays.ray_hops + c.rays.return_hops, phase_share(),
+               seconds_since(phase_began_)});
+}
+
 void Machine::run_phase(Phase phase, RunResult& result) {
-    const auto wall = std::chrono::steady_clock::now();
+    phase_began_ = std::chrono::steady_clock::now();
     environment_.phase = phase;
     environment_.phase_start = scheduler_.now();
+    if (phase == Phase::precast) {
+        for (const Cell& cell : array_.cells()) precast_rays_ += cell.store().voxels.size();
+        precast_rays_ *= environment_.context.sources.size();
+    }
     if (phase == Phase::load) {
         geometry_.start();
     } else {
@@ -158,7 +183,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
                           ? std::max(environment_.counters.last_progress, environment_.phase_start)
                           : scheduler_.now();
     const Cycle cycles = end - environment_.phase_start;
-    const double seconds = seconds_since(wall);
+    const double seconds = seconds_since(phase_began_);
     switch (phase) {
         case Phase::load:
             result.load_cycles = cycles, result.wall_load = seconds;
@@ -183,7 +208,7 @@ void Machine::load(RunResult& result) {
     result.load_activity = activity_.activity();
     // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
     result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
-    if (on_loaded_ && result.verdict == Verdict::completed) on_loaded_(loaded(result));
+    if (on_loaded_ && result.verdict == Verdict::completed) hand_over_loaded(result);
 }
 
 RunResult Machine::run(std::function<void(const RunProgress&)> progress) {

@@ -1,6 +1,7 @@
 // The whole machine: binds the stages, the array and the exterior, and runs the phases.
 #pragma once
 
+#include <chrono>
 #include <csignal>
 #include <functional>
 #include <memory>
@@ -17,6 +18,10 @@
 #include "pipeline/precomputation.hpp"
 
 namespace raycell {
+
+/// Whose loading a result tells of: its own, or that of the run that saved the array, which was an equal
+/// machine's or that of one with other buffers, links or costs.
+enum class LoadedBy { run, saved, saved_other_timing };
 
 enum class Verdict { completed, deadlock, livelock, cycle_limit, capacity, interrupted };
 const char* name_of(Verdict verdict);
@@ -74,6 +79,7 @@ struct RunResult {
     Activity load_activity;
     Activity activity;      ///< of precast and trace
     Cycle trace_start = 0;  ///< cycle in which tracing began; before it, from activity.start on, precast
+    LoadedBy loading = LoadedBy::run;
     std::uint64_t schedule_hash = 0;
     double wall_load = 0;  ///< seconds
     double wall_precast = 0;
@@ -87,6 +93,8 @@ struct RunProgress {
     std::uint64_t done;  ///< cells loaded or pixels complete
     std::uint64_t all;
     std::uint64_t hops;
+    double share;    ///< of the phase's work: polygons through the first stage, rays at their ends, pixels
+    double seconds;  ///< wall time since the phase began
 };
 
 class Machine : public sc_core::sc_module {
@@ -104,11 +112,11 @@ class Machine : public sc_core::sc_module {
     /// there is so far; for signal handlers. Null: nothing interrupts.
     void interrupt_by(const volatile std::sig_atomic_t* flag) { interrupt_ = flag; }
 
-    /// Instead of loading, starts with what an equal machine had loaded: its loading_key() must be this
+    /// Instead of loading, starts with what another machine had loaded: its loading_key() must be this
     /// one's. The schedule goes on from the cycle in which that one's loading ended. Not with random stalls,
-    /// whose draws go on.
-    void use_loaded(LoadedArray array) { preloaded_ = std::make_unique<LoadedArray>(std::move(array)); }
-    /// Called with the loaded array, once it is.
+    /// whose draws go on. Throws std::invalid_argument for the array of another machine.
+    void use_loaded(LoadedArray array);
+    /// Called with the loaded array, once it is. Not after use_loaded().
     void set_on_loaded(std::function<void(const LoadedArray&)> on_loaded) {
         on_loaded_ = std::move(on_loaded);
     }
@@ -139,11 +147,13 @@ class Machine : public sc_core::sc_module {
     void bind_pipeline();
     void load(RunResult& result);
     // machine_loaded.cpp
-    LoadedArray loaded(RunResult& result);
+    void hand_over_loaded(RunResult& result);
     void start_loaded(RunResult& result);
     void visit_loading(std::vector<std::uint64_t>& numbers, bool taking, RunResult& result);
     void run_phase(Phase phase, RunResult& result);
     bool phase_complete() const;
+    void tell_progress(Cycle now) const;
+    double phase_share() const;
     void judge(RunResult& result);
     InFlight in_flight() const;
     void check_conservation(const InFlight& there, bool completed) const;
@@ -170,6 +180,8 @@ class Machine : public sc_core::sc_module {
     std::vector<std::unique_ptr<Link>> row_links_;
     std::function<void(const RunProgress&)> progress_;
     std::uint64_t watch_calls_ = 0;
+    std::chrono::steady_clock::time_point phase_began_;
+    std::uint64_t precast_rays_ = 0;
     ActivityRecorder activity_;
     Cycle drain_start_ = never;
     const volatile std::sig_atomic_t* interrupt_ = nullptr;

@@ -29,6 +29,9 @@ class Counts {
         visit(bits);
         std::memcpy(&value, &bits, sizeof value);
     }
+    void finish() const {
+        if (taking_ && at_ != counts_.size()) throw std::runtime_error("a loaded array: too many counts");
+    }
 
   private:
     std::vector<std::uint64_t>& counts_;
@@ -69,17 +72,31 @@ void Machine::visit_loading(std::vector<std::uint64_t>& numbers, bool taking, Ru
         counts.visit(loading.hops);
         cell.restore(loading);
     }
+    counts.finish();
 }
 
-LoadedArray Machine::loaded(RunResult& result) {
+void Machine::use_loaded(LoadedArray array) {
+    if (array.key != loading_key(environment_.context.scene, environment_.settings) ||
+        array.cells.size() != array_.cells().size())
+        throw std::invalid_argument("a loaded array of another scene, size or voxels");
+    preloaded_ = std::make_unique<LoadedArray>(std::move(array));
+}
+
+/// The voxels are lent, not copied: they are most of what a loaded machine takes.
+void Machine::hand_over_loaded(RunResult& result) {
     LoadedArray array;
-    array.key = loading_key(environment_.context.scene, environment_.settings, environment_.machine);
+    array.key = loading_key(environment_.context.scene, environment_.settings);
+    array.timing = loading_timing(environment_.machine);
     visit_loading(array.counts, false, result);
-    for (const Cell& cell : array_.cells()) array.cells.push_back(cell.store());
-    return array;
+    for (Cell& cell : array_.cells()) array.cells.push_back(std::move(cell.store()));
+    on_loaded_(array);
+    for (std::size_t i = 0; i < array.cells.size(); ++i)
+        array_.cells()[i].store() = std::move(array.cells[i]);
 }
 
 void Machine::start_loaded(RunResult& result) {
+    const bool same = preloaded_->timing == loading_timing(environment_.machine);
+    result.loading = same ? LoadedBy::saved : LoadedBy::saved_other_timing;
     result.buffers.push_back({"load", 0, 0});
     visit_loading(preloaded_->counts, true, result);
     for (std::size_t i = 0; i < preloaded_->cells.size(); ++i)

@@ -1,5 +1,9 @@
 #include "testbench/raycell/array_files.hpp"
 
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
 #include <memory>
 
 #include "model/array_file.hpp"
@@ -15,7 +19,16 @@ struct Closer {
 LoadedArray read(const std::string& path) {
     const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rb"));
     if (!file) throw UsageError("--load-array: " + path + ": can't be read; expected a file of --save-array");
-    return read_array(file.get(), path);
+    return read_array(file.get(), "--load-array: " + path);
+}
+
+void check_folder(const std::string& path) {
+    const std::filesystem::path file(path);
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    if (file.filename().empty() || std::filesystem::is_directory(file) ||
+        !std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK | X_OK) != 0)
+        throw UsageError("--save-array " + path +
+                         ": expected the name of a file in a folder that exists and can be written to");
 }
 
 }  // namespace
@@ -34,19 +47,28 @@ void check_arrays(const RenderOptions& options) {
             throw UsageError(std::string(name) +
                              ": golden vectors begin with loading; expected no --golden beside it");
     }
+    if (!options.save_array.empty() && !options.load_array.empty())
+        throw UsageError("--save-array: the array of --load-array is kept already; expected one of the two");
+    if (!options.save_array.empty()) check_folder(options.save_array);
 }
 
 ArrayFiles::ArrayFiles(const RenderOptions& options, const CellScene& scene, Machine& machine) {
     if (!options.load_array.empty()) {
         LoadedArray array = read(options.load_array);
         const auto cells = std::size_t(options.picture.width) * std::size_t(options.picture.height);
-        if (array.cells.size() != cells ||
-            array.key != loading_key(scene, options.picture, options.machine)) {
-            throw UsageError(
-                "--load-array: " + options.load_array +
-                ": is of another scene, view or size, or was loaded with other voxels, words, buffers, links "
-                "or costs; expected the settings that it was saved with");
-        }
+        if (array.cells.size() != cells)
+            throw UsageError("--load-array: " + options.load_array + ": holds " +
+                             std::to_string(array.cells.size()) + " cells; expected " +
+                             std::to_string(cells) + ", as many as --cells asks for");
+        if (array.key != loading_key(scene, options.picture))
+            throw UsageError("--load-array: " + options.load_array +
+                             ": is of another scene, view or size, or was loaded with other voxels or words; "
+                             "expected the scene and the settings that it was saved with");
+        if (array.timing != loading_timing(options.machine))
+            std::cerr
+                << options.load_array
+                << ": warning: it was loaded with other buffers, links or costs: cycles and hash of the "
+                   "loading are those of that machine\n";
         machine.use_loaded(std::move(array));
     }
     if (options.save_array.empty()) return;
