@@ -26,6 +26,7 @@
 #include "testbench/raycell/ray_watch.hpp"
 #include "testbench/raycell/report_json.hpp"
 #include "testbench/raycell/scene_input.hpp"
+#include "testbench/raycell/time_estimate.hpp"
 
 namespace raycell {
 namespace {
@@ -54,15 +55,28 @@ struct Run {
     RunResult result;
     double wall_build = 0;
     std::uint64_t bytes_per_cell = 0;
+    Forecast forecast;
+    ExpectedSeconds expected;
     std::string cells_csv;
     std::unique_ptr<ProbeRun> probes;   ///< null: none
     std::unique_ptr<GoldenRun> golden;  ///< null: none
     DeadlockedCells deadlocked;         ///< with --vcd-on-deadlock
 };
 
+/// What the run will take; a long one says so.
+void foretell(const RenderOptions& options, const CellScene& scene, const TruthRenderer* truth, Run& run) {
+    run.forecast = forecast(scene, options.picture, truth);
+    const auto cells = std::size_t(options.picture.width) * std::size_t(options.picture.height);
+    run.expected = expected_seconds(run.forecast, cells, options.hosts == Hosts::cell);
+    if (!options.load_array.empty()) run.expected.load = 0;
+    if (run.expected.sum() > long_run && !options.quiet)
+        std::cerr << expectation(run.forecast, run.expected) << '\n';
+}
+
 Run run_timed(const RenderOptions& options, const std::string& configuration, const CellScene& scene,
-              const ExteriorTracer* tracer) {
+              const TruthRenderer* truth, const ExteriorTracer* tracer) {
     Run run;
+    foretell(options, scene, truth, run);
     const auto start = Clock::now();
     const std::uint64_t before = memory_bytes();
     // Never destroyed: SystemC takes ports down in quadratic time (minutes for 256x256 cells), and a process
@@ -125,6 +139,15 @@ Run run_untimed(const RenderOptions& options, const CellScene& scene, const Exte
     return run;
 }
 
+Json expected_report(const Run& run) {
+    const Forecast& f = run.forecast;
+    const ExpectedSeconds& s = run.expected;
+    return {{"hops", {{"load", f.load_hops}, {"precast", f.precast_hops}, {"trace", f.trace_hops}}},
+            {"load_steps", f.load_steps},
+            {"voxels", f.voxels},
+            {"seconds", {{"load", s.load}, {"precast", s.precast}, {"trace", s.trace}}}};
+}
+
 Json model_report(const Run& run) {
     const RunResult& r = run.result;
     const double seconds = r.wall_load + r.wall_precast + r.wall_trace;
@@ -134,6 +157,7 @@ Json model_report(const Run& run) {
               {"load", r.wall_load},
               {"precast", r.wall_precast},
               {"trace", r.wall_trace}}},
+            {"expected", expected_report(run)},
             {"hops_per_second", seconds > 0 ? hops / seconds : 0.0},
             {"peak_memory_bytes", peak_memory_bytes()},
             {"bytes_per_cell", run.bytes_per_cell}};
@@ -182,19 +206,20 @@ int run(const RenderOptions& options, const OptionTable& table) {
     for (const std::string& warning : range_warnings(Context(scene, options.picture))) {
         std::cerr << options.scene << ": warning: " << warning << '\n';
     }
-    const bool exterior =
-        options.picture.exterior == ExteriorMode::host && options.picture.stage == RunStage::trace;
+    const bool traces = options.picture.stage == RunStage::trace;
+    const bool exterior = options.picture.exterior == ExteriorMode::host && traces;
     std::unique_ptr<TruthRenderer> whole;
     std::unique_ptr<ClassicalExterior> tracer;
-    if (exterior) {
+    if (exterior || (traces && options.engine == Engine::timed)) {  // for the forecast alone, too
         whole = std::make_unique<TruthRenderer>(
             scene, TruthSettings{options.picture.max_depth, options.picture.min_weight});
-        tracer = std::make_unique<ClassicalExterior>(scene, *whole);
     }
+    if (exterior) tracer = std::make_unique<ClassicalExterior>(scene, *whole);
     const double wall_placing = seconds_since(start);
     const Json config = table.values();
-    Run done = options.engine == Engine::timed ? run_timed(options, to_toml(config), scene, tracer.get())
-                                               : run_untimed(options, scene, tracer.get());
+    Run done = options.engine == Engine::timed
+                   ? run_timed(options, to_toml(config), scene, whole.get(), tracer.get())
+                   : run_untimed(options, scene, tracer.get());
     done.wall_build += wall_placing;
 
     OutputSet outputs(options.prefix);
