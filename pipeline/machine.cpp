@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <stdexcept>
 #include <tuple>
 
@@ -162,6 +163,7 @@ void Machine::tell_progress(Cycle now) const {
 
 void Machine::run_phase(Phase phase, RunResult& result) {
     phase_began_ = std::chrono::steady_clock::now();
+    const std::clock_t processor = std::clock();
     environment_.phase = phase;
     environment_.phase_start = scheduler_.now();
     if (phase == Phase::precast) {
@@ -184,15 +186,18 @@ void Machine::run_phase(Phase phase, RunResult& result) {
                           : scheduler_.now();
     const Cycle cycles = end - environment_.phase_start;
     const double seconds = seconds_since(phase_began_);
+    const double worked = double(std::clock() - processor) / CLOCKS_PER_SEC;
     switch (phase) {
         case Phase::load:
-            result.load_cycles = cycles, result.wall_load = seconds;
+            result.load_cycles = cycles, result.wall_load = seconds, result.processor_load = worked;
             break;
         case Phase::precast:
-            result.precast_cycles = cycles, result.wall_precast = seconds;
+            result.precast_cycles = cycles, result.wall_precast = seconds, result.processor_precast = worked;
+            result.precast_hops =
+                environment_.counters.rays.ray_hops + environment_.counters.rays.return_hops;
             break;
         case Phase::trace:
-            result.trace_cycles = cycles, result.wall_trace = seconds;
+            result.trace_cycles = cycles, result.wall_trace = seconds, result.processor_trace = worked;
             break;
     }
 }

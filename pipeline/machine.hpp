@@ -80,10 +80,14 @@ struct RunResult {
     Activity activity;      ///< of precast and trace
     Cycle trace_start = 0;  ///< cycle in which tracing began; before it, from activity.start on, precast
     LoadedBy loading = LoadedBy::run;
+    std::uint64_t precast_hops = 0;  ///< of all hops of rays and answers, those of the precast phase
     std::uint64_t schedule_hash = 0;
     double wall_load = 0;  ///< seconds
     double wall_precast = 0;
     double wall_trace = 0;
+    double processor_load = 0;  ///< seconds of this process
+    double processor_precast = 0;
+    double processor_trace = 0;
 };
 
 /// Progress of a run, for people.

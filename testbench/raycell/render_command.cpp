@@ -130,6 +130,7 @@ Run run_untimed(const RenderOptions& options, const CellScene& scene, const Exte
     const std::uint64_t after = memory_bytes();
     run.bytes_per_cell = after > before ? (after - before) / machine.cells().size() : 0;
     result.counters.rays = machine.rays();
+    result.precast_hops = machine.precast_hops();
     result.geometry.items = machine.loaded().polygons;
     result.precomputation.items = machine.loaded().trapezes;
     result.distribution.items = machine.loaded().spans;
@@ -157,6 +158,8 @@ Json model_report(const Run& run) {
               {"load", r.wall_load},
               {"precast", r.wall_precast},
               {"trace", r.wall_trace}}},
+            {"processor_seconds",
+             {{"load", r.processor_load}, {"precast", r.processor_precast}, {"trace", r.processor_trace}}},
             {"expected", expected_report(run)},
             {"hops_per_second", seconds > 0 ? hops / seconds : 0.0},
             {"peak_memory_bytes", peak_memory_bytes()},

@@ -112,6 +112,7 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
         {"traversal", {{"utilisation", cell_cycles > 0 ? double(c.traversal_cycles) / cell_cycles : 0.0}}},
         {"shading", {{"utilisation", cell_cycles > 0 ? double(c.shading_cycles) / cell_cycles : 0.0}}}};
     json["hops"] = {{"load", c.load_hops}, {"ray", c.rays.ray_hops}, {"return", c.rays.return_hops}};
+    json["precast"] = {{"hops", result.precast_hops}};
     json["rays"] = {{"primary", c.rays.primary},     {"reflected", c.rays.reflected},
                     {"refracted", c.rays.refracted}, {"shadow", c.rays.shadow},
                     {"precast", c.rays.precast},     {"lost", c.rays.lost},

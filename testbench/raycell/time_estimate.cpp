@@ -9,7 +9,7 @@ namespace {
 
 // What the simulator takes for each of what is foretold, nanoseconds: fitted to 54 runs of the Standard
 // Procedural Databases at 64x64 to 256x256 cells, which they describe to within a factor of 1.7, on one core
-// of a busy server. `scripts/bench` measures seconds and hops again (docs/performance.md).
+// of a busy server. `scripts/bench --only growth` measures seconds and hops again (docs/performance.md).
 constexpr double load_hop = 150;
 constexpr double load_step = 170;
 constexpr double load_cell = 2000;
