@@ -52,27 +52,29 @@ void check_arrays(const RenderOptions& options) {
     if (!options.save_array.empty()) check_folder(options.save_array);
 }
 
-ArrayFiles::ArrayFiles(const RenderOptions& options, const CellScene& scene, Machine& machine) {
-    if (!options.load_array.empty()) {
-        LoadedArray array = read(options.load_array);
-        const auto cells = std::size_t(options.picture.width) * std::size_t(options.picture.height);
-        if (array.cells.size() != cells)
-            throw UsageError("--load-array: " + options.load_array + ": holds " +
-                             std::to_string(array.cells.size()) + " cells; expected " +
-                             std::to_string(cells) + ", as many as --cells asks for");
-        if (array.key != loading_key(scene, options.picture))
-            throw UsageError("--load-array: " + options.load_array +
-                             ": is of another scene, view or size, or was loaded with other voxels or words; "
-                             "expected the scene and the settings that it was saved with");
-        if (array.timing != loading_timing(options.machine))
-            std::cerr
-                << options.load_array
-                << ": warning: it was loaded with other buffers, links or costs: cycles and hash of the "
-                   "loading are those of that machine\n";
-        machine.use_loaded(std::move(array));
-    }
-    if (options.save_array.empty()) return;
-    machine.set_on_loaded([path = options.save_array](const LoadedArray& array) {
+ArrayFiles::ArrayFiles(const RenderOptions& options, const CellScene& scene) : save_(options.save_array) {
+    if (options.load_array.empty()) return;
+    LoadedArray array = read(options.load_array);
+    const auto cells = std::size_t(options.picture.width) * std::size_t(options.picture.height);
+    if (array.cells.size() != cells)
+        throw UsageError("--load-array: " + options.load_array + ": holds " +
+                         std::to_string(array.cells.size()) + " cells; expected " + std::to_string(cells) +
+                         ", as many as --cells asks for");
+    if (array.key != loading_key(scene, options.picture))
+        throw UsageError("--load-array: " + options.load_array +
+                         ": is of another scene, view or size, or was loaded with other voxels or words; "
+                         "expected the scene and the settings that it was saved with");
+    if (array.timing != loading_timing(options.machine))
+        std::cerr << options.load_array
+                  << ": warning: it was loaded with other buffers, links or costs: cycles and hash of the "
+                     "loading are those of that machine\n";
+    loaded_ = std::move(array);
+}
+
+void ArrayFiles::attach(Machine& machine) {
+    if (loaded_) machine.use_loaded(std::move(*loaded_));
+    if (save_.empty()) return;
+    machine.set_on_loaded([path = save_](const LoadedArray& array) {
         NewFile file(path);
         write_array(file.stream(), array);
         file.finish();

@@ -76,6 +76,7 @@ void foretell(const RenderOptions& options, const CellScene& scene, const TruthR
 Run run_timed(const RenderOptions& options, const std::string& configuration, const CellScene& scene,
               const TruthRenderer* truth, const ExteriorTracer* tracer) {
     Run run;
+    ArrayFiles arrays(options, scene);
     foretell(options, scene, truth, run);
     const auto start = Clock::now();
     const std::uint64_t before = memory_bytes();
@@ -88,7 +89,7 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     const std::uint64_t after = memory_bytes();
     run.bytes_per_cell = after > before ? (after - before) / cells : 0;
     run.wall_build = seconds_since(start);
-    ArrayFiles arrays(options, scene, machine);
+    arrays.attach(machine);
     CellObserverList observers;
     const std::unique_ptr<RayWatch> watch = watch_of(options, std::cout);
     if (watch) observers.add(*watch);

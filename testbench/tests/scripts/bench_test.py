@@ -64,8 +64,8 @@ class Test:
         done = self.bench()
         expect(done.returncode == 0, f"tables and charts, not {done.stderr}")
         expect(self.calls() == RUNS, f"{RUNS} runs")
-        expect(sorted(path.name for path in self.out.iterdir()) ==
-               ["bench_growth.csv", "bench_growth.md", "bench_growth.png", "bench_line.png"], "a table, a CSV, two charts")
+        files = ["bench_growth.csv", "bench_growth.md", "bench_growth.png", "bench_line.png"]
+        expect(sorted(path.name for path in self.out.iterdir()) == files, "a table, a CSV, two charts")
         rows = self.rows()
         expect(len(rows) == RUNS, f"{RUNS} rows")
         for row in rows:
