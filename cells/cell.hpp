@@ -55,6 +55,16 @@ class alignas(64) Cell final : public Client {
     int x() const { return x_; }
     int y() const { return y_; }
     std::uint64_t schedule_hash() const { return hash_; }
+    /// What loading leaves in a cell beside its voxels.
+    struct Loading {
+        std::uint64_t hash = 0;  ///< of its schedule
+        std::uint64_t hops = 0;
+    };
+    Loading loading() const { return {hash_, statistics_.load_hops}; }
+    void restore(const Loading& loading) {
+        hash_ = loading.hash;
+        statistics_.load_hops = loading.hops;
+    }
     /// What the cell has done so far; what is still going on counts up to `now`.
     CellStatistics statistics(Cycle now) const;
     /// True while anything in the cell is unfinished: a unit at work, a slot in use, an own ray not answered.
