@@ -5,20 +5,6 @@
 #include "cells/split_link.hpp"
 
 namespace raycell {
-namespace {
-
-/// Classes that a link over this side carries.
-std::uint32_t used_classes(const BufferClasses& classes, Side side) {
-    const bool horizontal = side == Side::east || side == Side::west;
-    std::uint32_t used = 0;
-    for (int index = 0; index < classes.count; ++index) {
-        if (classes.used(index, horizontal, side)) used |= 1U << index;
-    }
-    return used;
-}
-
-}  // namespace
-
 bool Granularity::is_module(int x, int y) const {
     return every_cell || std::any_of(detail.begin(), detail.end(),
                                      [&](const CellRange& range) { return range.contains(x, y); });
@@ -199,7 +185,7 @@ double Array::bytes(const Granularity& granularity, int width, int height, const
     // Links over the border, which a tile's array may not have, are counted.
     double each = sizeof(Cell);
     for (int side = 0; side < side_count; ++side) {
-        each += Link::bytes(used_classes(classes, Side(side))) + sizeof(std::uint32_t);
+        each += Link::bytes(classes.used_over(Side(side))) + sizeof(std::uint32_t);
     }
     constexpr double module = 8.3e3;  // measured: ports, process and event of SystemC's
     return each * width * height + module * double(granularity.modules(width, height));

@@ -17,7 +17,9 @@ namespace raycell {
 struct Granularity {
     bool every_cell = false;
     std::vector<CellRange> detail;
-    int tile_side = 64;  ///< cells: one activation of SystemC's for so many squared
+    /// Cells: one activation of SystemC's for so many squared. The larger, the longer the list of cells to
+    /// run in a cycle, and the farther ahead a tile can ask for memory.
+    int tile_side = 4096;
 
     bool is_module(int x, int y) const;
     /// Number of modules in an array.

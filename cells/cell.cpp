@@ -8,8 +8,8 @@ namespace raycell {
 
 Cell::Cell(Environment& environment, int x, int y)
     : env_(environment),
-      x_(x),
-      y_(y),
+      x_(std::uint16_t(x)),
+      y_(std::uint16_t(y)),
       ray_store_(environment.machine.ray_store, waiting_generations(environment.context),
                  environment.machine.slots) {}
 
@@ -236,7 +236,8 @@ void Cell::move_answers(Cycle now) {
     const int index = env_.classes.answer;
     std::array<int, side_count> order;  // sides with an answer, oldest first
     int count = 0;
-    for (std::uint32_t sides = answers_to_move() & ~answers_moved_; sides; sides &= sides - 1) {
+    for (std::uint32_t sides = answers_to_move() & ~std::uint32_t(answers_moved_); sides;
+         sides &= sides - 1) {
         const int side = __builtin_ctz(sides);
         Link* in = in_[std::size_t(side)];
         const Message* head = in->head(index);
@@ -282,7 +283,8 @@ void Cell::move_answer(std::size_t from, Cycle now) {
             blocked_ = true;
             const bool full = out->room(index) == Link::Room::full;
             stall(wait, full ? Stall::answer_full : Stall::answer_busy, id, now);
-            if (full && out->sender_waits(index)) park(1U << (answer_bits + unsigned(from)), std::size_t(way));
+            if (full && out->sender_waits(index))
+                park(1U << (answer_bits + unsigned(from)), std::size_t(way));
             return;
         }
         ++env_.counters.rays.return_hops;

@@ -20,7 +20,7 @@ namespace raycell {
 /// store. Each unit does one thing at a time; costs come from the cost table. A ray stays in its input buffer
 /// while it is tested and until what it needs next is free: the output buffer, a slot, or the way for its
 /// answer.
-class Cell final : public Client {
+class alignas(64) Cell final : public Client {
   public:
     Cell(Environment& environment, int x, int y);
 
@@ -37,7 +37,6 @@ class Cell final : public Client {
     // run: each may read what the one before asked for. None changes anything.
     void fetch() const;
     void fetch_links() const;
-    void fetch_buffers() const;
     void fetch_messages() const;
     void fetch_ways() const;
 
@@ -56,6 +55,16 @@ class Cell final : public Client {
     int x() const { return x_; }
     int y() const { return y_; }
     std::uint64_t schedule_hash() const { return hash_; }
+    /// What loading leaves in a cell beside its voxels.
+    struct Loading {
+        std::uint64_t hash = 0;  ///< of its schedule
+        std::uint64_t hops = 0;
+    };
+    Loading loading() const { return {hash_, statistics_.load_hops}; }
+    void restore(const Loading& loading) {
+        hash_ = loading.hash;
+        statistics_.load_hops = loading.hops;
+    }
     /// What the cell has done so far; what is still going on counts up to `now`.
     CellStatistics statistics(Cycle now) const;
     /// True while anything in the cell is unfinished: a unit at work, a slot in use, an own ray not answered.
@@ -229,54 +238,57 @@ class Cell final : public Client {
     };
     static constexpr std::uint8_t no_way = 255;
 
-    // What every step looks at comes first; what few cells or reports need, last.
-    Environment& env_;
-    CellHost* host_ = nullptr;
-    Cycle next_ = never;
-    int x_;
-    int y_;
-    /// Bit per buffer that holds anything: ray inputs from 0, answers by side from `answer_bits`.
-    std::uint32_t pending_ = 0;
-    static constexpr unsigned answer_bits = 16;
-    // Bits as in `pending_`, the own ray's after the ray inputs.
-    std::uint32_t decided_ = 0;  ///< rays whose test is over
-    std::uint32_t parked_ = 0;   ///< rays and answers that wait for room behind an output ...
-    std::array<std::uint32_t, side_count> parked_on_{};  ///< ... by its side; some may have left since
-    std::uint32_t room_made_ = 0;      ///< bit per output: room was made since somebody parked on it
-    std::uint32_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
-    Traversal traversal_;
-    RayPacket* own_ = nullptr;  ///< primary or precast ray on its way out
-    Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
-    std::uint8_t ray_input_count_ = 0;
-    std::uint8_t own_attempts_ = 0;
-    Cycle feed_at_ = never;       ///< cycle from which on a slot may have a child to send
-    bool look_to_shade_ = false;  ///< a slot may have work for the shading unit
-    std::uint16_t children_ = 0;  ///< on their way out of slots
-    std::uint16_t replies_ = 0;   ///< answers of slots and of the shading unit that want to go
-    bool replies_first_ = false;  ///< replies go before answers that came in, which went last
-    bool answer_moved_ = false;   ///< this cycle: an answer left an input
-    bool moved_ = false;          ///< this cycle: something went on, or came home
-    bool blocked_ = false;        ///< this cycle: something wanted to and could not
-    bool root_waits_ = false;     ///< the pixel's intensity is still to come
-    bool root_to_send_ = false;
-    std::uint32_t next_test_ = 0;  ///< round robin over places
-    Stall cause_ = Stall::none;    ///< why the last attempt to move something failed
-    std::array<RayInput, most_ray_inputs> ray_inputs_{};
-    std::array<Way, most_ray_inputs + 1> ways_{};  ///< by place, of inputs and the own ray
-    std::array<Link*, side_count> in_{};
-    std::array<Link*, side_count> out_{};
     /// Cycles that a message which waits to move is passed over by others; after that it goes before all of
     /// them, oldest first. Without it a stream of notices can starve what would end it (deadlock.md, step 5).
     static constexpr Cycle patience = 65536;
     static constexpr Cycle epoch = patience / 8;  ///< ages are counted in these
-    Cycle look_for_overdue_ = patience;           ///< cycle from which on to look for such messages
-    bool overdue_parked_ = false;                 ///< there were some, all of which are parked
+    static constexpr unsigned answer_bits = 16;
+
+    // By cache lines: what every step looks at comes first, `hot_lines` of it; what few cells or reports
+    // need, last. Words of bits have a bit per place: ray inputs from 0, the own ray after them, answers by
+    // side from `answer_bits`.
+    static constexpr std::size_t hot_lines = 5;
+    Environment& env_;
+    CellHost* host_ = nullptr;
+    Cycle next_ = never;
+    std::uint16_t x_;
+    std::uint16_t y_;
+    std::uint32_t pending_ = 0;    ///< buffers that hold anything, arrived or on the wires
+    std::uint32_t decided_ = 0;    ///< rays whose test is over
+    std::uint32_t parked_ = 0;     ///< rays and answers that wait for room behind an output
+    std::uint32_t room_made_ = 0;  ///< bit per output: room was made since somebody parked on it
+    std::uint32_t next_test_ = 0;  ///< round robin over places
+    Traversal traversal_;
+    RayPacket* own_ = nullptr;    ///< primary or precast ray on its way out
+    Cycle feed_at_ = never;       ///< cycle from which on a slot may have a child to send
+    std::uint16_t replies_ = 0;   ///< answers of slots and of the shading unit that want to go
+    std::uint16_t children_ = 0;  ///< on their way out of slots
+    std::uint8_t ray_input_count_ = 0;
+    std::uint8_t own_attempts_ = 0;
+    std::uint8_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
+    Stall cause_ = Stall::none;       ///< why the last attempt to move something failed
+    bool look_to_shade_ = false;      ///< a slot may have work for the shading unit
+    bool replies_first_ = false;      ///< replies go before answers that came in, which went last
+    bool answer_moved_ = false;       ///< this cycle: an answer left an input
+    bool moved_ = false;              ///< this cycle: something went on, or came home
+    bool blocked_ = false;            ///< this cycle: something wanted to and could not
+    bool root_waits_ = false;         ///< the pixel's intensity is still to come
+    bool root_to_send_ = false;
+    bool overdue_parked_ = false;  ///< there were overdue messages, all of which are parked
+    Cycle store_port_ = never;     ///< cycle in which the ray store's one write port was used
+    Cycle look_for_overdue_ =
+        patience;  ///< cycle from which on to look for messages that waited for too long
     std::uint64_t hash_ = 0;
     TimeOut time_out_;
-    RayStore ray_store_;
+    std::array<std::uint32_t, side_count> parked_on_{};  ///< parked, by output; some may have left since
+    std::array<Link*, side_count> in_{};
+    std::array<Link*, side_count> out_{};
+    std::array<RayInput, most_ray_inputs> ray_inputs_{};
+    std::array<Way, most_ray_inputs + 1> ways_{};  ///< by place, of inputs and the own ray
     Shading shading_;
-    CellStore store_;
     CellStatistics statistics_;
+    CellStore store_;
+    RayStore ray_store_;
     std::array<Wait, side_count> answer_waits_{};  ///< of the oldest answer at each side
     Wait direct_wait_;                             ///< of the answer that stands in the shading unit
     Cycle own_at_ = 0;

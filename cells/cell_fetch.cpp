@@ -8,38 +8,27 @@ namespace raycell {
 /// What every step looks at: it comes first in a cell.
 void Cell::fetch() const {
     constexpr std::size_t line = 64;
-    constexpr std::size_t lines = 7;
     const char* at = reinterpret_cast<const char*>(this);
-    for (std::size_t i = 0; i < lines; ++i) __builtin_prefetch(at + i * line, 1);
-    __builtin_prefetch(&store_);
+    for (std::size_t i = 0; i < hot_lines; ++i) __builtin_prefetch(at + i * line, 1);
+    __builtin_prefetch(&statistics_, 1);
 }
 
 void Cell::fetch_links() const {
     time_out_.fetch();
-    for (std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1); inputs; inputs &= inputs - 1) {
-        const auto place = std::size_t(__builtin_ctz(inputs));
-        if (!(parked_ >> place & 1)) link_of(place).fetch();
+    for (std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1) & ~parked_; inputs;
+         inputs &= inputs - 1) {
+        const RayInput& input = ray_inputs_[std::size_t(__builtin_ctz(inputs))];
+        in_[std::size_t(input.side)]->fetch(env_.buffer_places[std::size_t(input.side)][input.index]);
     }
     for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
-        in_[std::size_t(__builtin_ctz(sides))]->fetch();
+        const auto side = std::size_t(__builtin_ctz(sides));
+        in_[side]->fetch(env_.buffer_places[side][std::size_t(env_.classes.answer)]);
     }
+    if (pending_ & ~decided_ & ~bit_in_test()) __builtin_prefetch(&store_);
     for (std::uint32_t rays = (decided_ | bit_in_test()) & ~parked_; rays; rays &= rays - 1) {
         const Way& way = ways_[std::size_t(__builtin_ctz(rays))];
-        if (way.side != no_way && out_[way.side]) out_[way.side]->fetch();
-    }
-}
-
-void Cell::fetch_buffers() const {
-    for (std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1); inputs; inputs &= inputs - 1) {
-        const auto place = std::size_t(__builtin_ctz(inputs));
-        if (!(parked_ >> place & 1)) link_of(place).fetch_buffer(ray_inputs_[place].index);
-    }
-    for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
-        in_[std::size_t(__builtin_ctz(sides))]->fetch_buffer(env_.classes.answer);
-    }
-    for (std::uint32_t rays = (decided_ | bit_in_test()) & ~parked_; rays; rays &= rays - 1) {
-        const Way& way = ways_[std::size_t(__builtin_ctz(rays))];
-        if (way.side != no_way && out_[way.side]) out_[way.side]->fetch_buffer(way.index);
+        if (way.side == no_way || !out_[way.side]) continue;
+        out_[way.side]->fetch(env_.buffer_places[way.side][way.index]);
     }
 }
 
@@ -72,9 +61,8 @@ void Cell::fetch_ways() const {
     for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
         const Message* head = in_[std::size_t(__builtin_ctz(sides))]->head(env_.classes.answer);
         if (!head || head->kind != Message::Kind::answer || local(*head->answer)) continue;
-        const Link& out = *out_[std::size_t(route(*head->answer))];
-        out.fetch();
-        out.fetch_buffer(env_.classes.answer);
+        const auto side = std::size_t(route(*head->answer));
+        out_[side]->fetch(env_.buffer_places[side][std::size_t(env_.classes.answer)]);
         __builtin_prefetch(&env_.pixel_hops[std::size_t(head->answer->id >> 32)], 1);
     }
 }

@@ -48,7 +48,7 @@ void Cell::move_overdue(Cycle now) {
             const Link& in = *in_[at];
             const int held = in.occupancy(index);
             move_answer(at, now);
-            if (in.occupancy(index) < held) answers_moved_ |= 1U << at;
+            if (in.occupancy(index) < held) answers_moved_ |= std::uint8_t(1U << at);
         } else if (kind == reply) {
             move_replies(now);  // all of them: there are finitely many
         } else {

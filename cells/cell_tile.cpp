@@ -7,9 +7,8 @@ namespace {
 // each part is asked for; each step reads what the one before it brought.
 constexpr std::size_t cells_ahead = 16;
 constexpr std::size_t links_ahead = 12;
-constexpr std::size_t buffers_ahead = 8;
-constexpr std::size_t messages_ahead = 4;
-constexpr std::size_t ways_ahead = 2;
+constexpr std::size_t messages_ahead = 8;
+constexpr std::size_t ways_ahead = 4;
 
 }  // namespace
 
@@ -26,7 +25,6 @@ void CellTile::run() {
     for (std::size_t i = 0; i < active_.size(); ++i) {
         if (i + cells_ahead < active_.size()) active_[i + cells_ahead]->fetch();
         if (i + links_ahead < active_.size()) active_[i + links_ahead]->fetch_links();
-        if (i + buffers_ahead < active_.size()) active_[i + buffers_ahead]->fetch_buffers();
         if (i + messages_ahead < active_.size()) active_[i + messages_ahead]->fetch_messages();
         if (i + ways_ahead < active_.size()) active_[i + ways_ahead]->fetch_ways();
         const Cycle next = active_[i]->step(now);

@@ -1,6 +1,8 @@
 // What all cells of an array share: settings, costs, pools, counters.
 #pragma once
 
+#include <array>
+
 #include "cells/ledger.hpp"
 #include "cells/message.hpp"
 #include "cells/observer.hpp"
@@ -74,6 +76,9 @@ struct Environment {
     MessageBits bits;
     LinkCycles cycles;  ///< for `bits`: no division in every hop
     BufferClasses classes;
+    /// Where the buffer of a class stands in the links between cells, by the side of their source or, the
+    /// same, of the cell that they come to: Link::fetch().
+    std::array<std::array<std::uint8_t, 5>, side_count> buffer_places{};
     /// Cycles from an answer's arrival until its cell need look at it; 0 where it may stand in a ray's way.
     int answer_routing;
     const ArrayShare share;
@@ -107,7 +112,9 @@ struct Environment {
           share(part ? *part : ArrayShare{0, scene.frame.height, nullptr, nullptr}),
           scheduler(s),
           picture(p),
-          pixel_hops(p.pixels.size()) {}
+          pixel_hops(p.pixels.size()) {
+        find_buffer_places();
+    }
 
     int width() const { return context.scene.frame.width; }
     int height() const { return context.scene.frame.height; }
@@ -116,6 +123,9 @@ struct Environment {
     int load_bits(const LoadItem& item) const;
     /// Gives a link its random stalls, if there are any, by its name.
     void stall(Link& link, const std::string& name) const;
+
+  private:
+    void find_buffer_places();
 };
 
 }  // namespace raycell

@@ -106,14 +106,22 @@ Link::ClassStatistics Link::statistics(int index) const {
 
 /// What stands in a buffer then counts as sent when the new phase begins.
 void Link::reset_statistics() {
-    busy_cycles_ = 0;
     for (int index = 0; index < classes_; ++index) {
         if (!find(index)) continue;
         Buffer& b = buffer(index);
         b.sent = b.count;
+        b.busy = 0;
         b.occupied = -(b.count * scheduler_.now());
         b.peak = b.count;
     }
+}
+
+std::uint64_t Link::busy_cycles() const {
+    std::uint64_t sum = 0;
+    for (int index = 0; index < classes_; ++index) {
+        if (const Buffer* b = find(index)) sum += b->busy;
+    }
+    return sum;
 }
 
 Link::Held Link::held(int index, int place) const { return buffer(index).at(std::uint32_t(place)); }

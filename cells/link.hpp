@@ -21,8 +21,8 @@ class LinkOut : virtual public sc_core::sc_interface {
     /// the cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is
     /// woken in the cycle after room was made.
     virtual bool can_send(int index, Cycle& retry) = 0;
-    /// Starts a message; it is visible at the far end after its link cycles. The receiver is woken `later` cycles
-    /// after that: for messages which it does nothing with before.
+    /// Starts a message; it is visible at the far end after its link cycles. The receiver is woken `later`
+    /// cycles after that: for messages which it does nothing with before.
     virtual void send(int index, const Message& message, int cycles, int later = 0) = 0;
 };
 
@@ -40,8 +40,8 @@ class LinkIn : virtual public sc_core::sc_interface {
 
 /// The channel. Writes and reads of a cycle show in the next one, so the order in which cells run does not
 /// matter. Final, so that a cell's calls need no table; an array has four of them per cell, so what few links
-/// have is kept apart, and classes that a link never carries have no buffer. Laid out by cache lines, which are
-/// what a hop costs in a large array: what every hop needs in the first, then a line for each buffer.
+/// have is kept apart, and classes that a link never carries have no buffer. Laid out by cache lines, which
+/// are what a hop costs in a large array: what every hop needs in the first, then a line for each buffer.
 class alignas(64) Link final : public LinkOut, public LinkIn {
   public:
     struct ClassStatistics {
@@ -102,8 +102,8 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     /// Asks the link to keep `bits` set in `pending` while the buffer of a class holds anything, on the wires
     /// or arrived: so a cell need not look into empty buffers. One `pending` for all classes.
     void watch(int index, std::uint32_t* pending, std::uint32_t bits);
-    /// Asks the link to set `bits` in `room_made` when a sender that can_send() has refused for want of room is
-    /// woken: until then it need not ask again.
+    /// Asks the link to set `bits` in `room_made` when a sender that can_send() has refused for want of room
+    /// is woken: until then it need not ask again.
     void tell_room(std::uint32_t* room_made, std::uint32_t bits);
     /// Whether a sender was refused for want of room and none has been made since.
     bool sender_waits(int index) const { return buffer(index).sender_waits; }
@@ -128,15 +128,21 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     ClassStatistics statistics(int index) const;
     /// Begins a phase: counts anew.
     void reset_statistics();
-    std::uint64_t busy_cycles() const { return busy_cycles_; }
+    std::uint64_t busy_cycles() const;
 
     /// Bytes of an unwatched link with empty buffers.
     static std::size_t bytes(std::uint32_t used);
 
-    // Ask for memory ahead of a hop: the link's own first line, which the buffer's place stands in, then the
-    // buffer's.
-    void fetch() const { __builtin_prefetch(this, 1); }
-    void fetch_buffer(int index) const { __builtin_prefetch(&buffer(index), 1); }
+    /// Asks for the memory of a hop ahead: the link's first line and that of its `place`th buffer, which it
+    /// takes on trust rather than read.
+    void fetch(std::size_t place) const {
+        __builtin_prefetch(this, 1);
+        __builtin_prefetch(&buffers_[place], 1);
+    }
+    /// The place of a class's buffer in a link that carries the classes `used`.
+    static constexpr std::uint8_t place_of(int index, std::uint32_t used) {
+        return std::uint8_t(__builtin_popcount(used & ((1U << unsigned(index)) - 1)));
+    }
 
   private:
     using Entry = Held;
@@ -146,8 +152,9 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
             Entry* ring;  ///< of `capacity`, once more than one has been needed
         };
         Cycle last_pop = never;
-        std::uint64_t sent = 0;
         std::uint64_t occupied = 0;  ///< cycles of pops less cycles of sends: needs no note of when
+        std::uint32_t sent = 0;
+        std::uint32_t busy = 0;  ///< cycles that its messages took on the wires
         std::uint32_t pending_bits = 0;
         std::uint16_t capacity = 1;
         std::uint16_t head = 0;
@@ -210,7 +217,6 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     // Second line.
     Client* source_ = nullptr;
     std::uint32_t* room_made_ = nullptr;  ///< the source's
-    std::uint64_t busy_cycles_ = 0;
     std::uint32_t room_bits_ = 0;
     static constexpr std::size_t own_buffers = 3;  ///< all that a link between cells has, but with `quadrant`
     std::unique_ptr<Buffer[]> more_buffers_;
@@ -251,7 +257,7 @@ inline void Link::send(int index, const Message& message, int cycles, int later)
     b.occupied -= now;
     // A place read in this cycle still counts: the peak must not depend on which end ran first.
     b.peak = std::max(b.peak, std::uint16_t(b.count + b.still_seen(now)));
-    busy_cycles_ += std::uint64_t(cycles);
+    b.busy += std::uint32_t(cycles);
     if (extras_) tell_sent(index, message, cycles);
     if (!sink_) return;
     scheduler_.wake(*sink_, wires_free_ + Cycle(later));

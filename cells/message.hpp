@@ -10,15 +10,15 @@
 namespace raycell {
 
 /// A ray and what the cell that it stands in knows about it already.
-struct RayPacket {
+struct alignas(64) RayPacket {
     enum class Stage : std::uint8_t { untested, in_test, decided };
     Ray ray;
     Visit visit;
     Stage stage = Stage::untested;
-    std::uint64_t launched = 0;  ///< cycle in which it was put on its way
-    std::uint32_t hops = 0;      ///< since then
-    std::uint64_t decided = 0;   ///< cycle in which the test was over
+    std::uint32_t hops = 0;     ///< since it was put on its way
+    std::uint64_t decided = 0;  ///< cycle in which the test was over
     Wait wait;
+    std::uint64_t launched = 0;  ///< cycle in which it was put on its way
 };
 
 /// A load message: polygons from geometry, trapezes from precomputation and down the column of distributors,

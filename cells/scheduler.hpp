@@ -66,8 +66,9 @@ class Scheduler : public sc_core::sc_module {
     /// still.
     void set_sampler(std::function<void(Cycle)> sampler) { sampler_ = std::move(sampler); }
 
-    /// What can be seen changes in `cycle`, though nobody acts before `acts`: if there is a sampler, it is called
-    /// for that cycle too. Nothing else happens in it, the watch is not called: sampling changes no run.
+    /// What can be seen changes in `cycle`, though nobody acts before `acts`: if there is a sampler, it is
+    /// called for that cycle too. Nothing else happens in it, the watch is not called: sampling changes no
+    /// run.
     void sample_at(Cycle cycle, Cycle acts) {
         if (!sampler_ || acts > limit_) return;
         samples_.insert(cycle);

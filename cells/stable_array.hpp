@@ -10,9 +10,9 @@
 
 namespace raycell {
 
-/// Room for a number of objects that is known in advance; they are made one by one. Aligned for huge pages and
-/// asks for them where there are any: neighbours in the array are far apart in memory, and looking pages up
-/// costs a tenth of a run. Room that is not used is not touched.
+/// Room for a number of objects that is known in advance; they are made one by one. Aligned for huge pages
+/// and asks for them where there are any: neighbours in the array are far apart in memory, and looking pages
+/// up costs a tenth of a run. Room that is not used is not touched.
 template <typename T>
 class StableArray {
   public:

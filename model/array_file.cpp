@@ -6,7 +6,7 @@
 namespace raycell {
 namespace {
 
-constexpr std::uint64_t magic = 0x316c6c6563796172ULL;  // "raycell" and a version
+constexpr std::uint64_t magic = 0x326c6c6563796172ULL;  // "raycell" and a version
 constexpr std::uint64_t fnv_start = 0xcbf29ce484222325ULL;
 constexpr std::uint64_t fnv_prime = 0x100000001b3ULL;
 
@@ -177,8 +177,7 @@ void put_scene(A& a, const CellScene& scene) {
 
 }  // namespace
 
-std::uint64_t loading_key(const CellScene& scene, const PictureSettings& picture,
-                          const MachineSettings& machine) {
+std::uint64_t loading_key(const CellScene& scene, const PictureSettings& picture) {
     Hasher hasher;
     Put<Hasher> put(hasher);
     put_scene(put, scene);
@@ -186,7 +185,12 @@ std::uint64_t loading_key(const CellScene& scene, const PictureSettings& picture
     put.whole(int(p.hit)), put.whole(int(p.normals)), put.whole(int(p.display)), put.whole(p.voxel_capacity);
     const NumberSettings& n = p.numbers;
     put.whole(int(n.arithmetic)), put.whole(n.word_bits), put.whole(int(n.rounding));
-    // Cycles of loading: how long a load message takes over links and through units.
+    return hasher.hash();
+}
+
+std::uint64_t loading_timing(const MachineSettings& machine) {
+    Hasher hasher;
+    Put<Hasher> put(hasher);
     put.whole(machine.buffer_depth), put.whole(machine.link_bits);
     const CostTable& c = machine.costs;
     for (const std::uint32_t cost : {c.load_voxel, c.load_forward, c.geometry_polygon,
@@ -198,7 +202,8 @@ std::uint64_t loading_key(const CellScene& scene, const PictureSettings& picture
 void write_array(std::FILE* file, const LoadedArray& array) {
     Writer writer(file);
     Put<Writer> put(writer);
-    put.whole(magic), put.whole(array.key), put.whole(array.cells.size()), put.whole(array.counts.size());
+    put.whole(magic), put.whole(array.key), put.whole(array.timing), put.whole(array.cells.size()),
+        put.whole(array.counts.size());
     for (const std::uint64_t count : array.counts) writer.number(count);
     for (const CellStore& cell : array.cells) put_cell(writer, cell);
     writer.finish();
@@ -209,6 +214,7 @@ LoadedArray read_array(std::FILE* file, const std::string& name) {
     if (reader.next() != magic) reader.fail("is no loaded array, or of another version");
     LoadedArray array;
     array.key = reader.next();
+    array.timing = reader.next();
     const std::size_t cells = reader.count(std::uint64_t(1) << 24);
     const std::size_t counts = reader.count(most_things);
     for (std::size_t i = 0; i < counts; ++i) array.counts.push_back(reader.next());

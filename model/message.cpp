@@ -117,4 +117,13 @@ bool BufferClasses::used(int index, bool horizontal, Side side) const {
     return (index >> 1 & 1) == (side == Side::north ? 1 : 0);
 }
 
+std::uint32_t BufferClasses::used_over(Side side) const {
+    const bool horizontal = side == Side::east || side == Side::west;
+    std::uint32_t bits = 0;
+    for (int index = 0; index < count; ++index) {
+        if (used(index, horizontal, side)) bits |= 1U << unsigned(index);
+    }
+    return bits;
+}
+
 }  // namespace raycell

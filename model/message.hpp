@@ -10,7 +10,7 @@ namespace raycell {
 
 /// The way back: an intensity, a verdict on a source, or the notice that a ray was destroyed and must be sent
 /// again.
-struct Answer {
+struct alignas(64) Answer {
     enum class Kind : std::uint8_t { intensity, lit, blocked, postponed };
     dvec3 colour{0, 0, 0};
     std::uint64_t id = 0;      ///< of the ray that it answers
@@ -52,6 +52,8 @@ struct BufferClasses {
     int ray(const Ray& r) const;
     bool used(int index, bool horizontal,
               Side side) const;  ///< whether a link in this direction has the buffer
+    /// The classes, as bits, of a link over this side of its source.
+    std::uint32_t used_over(Side side) const;
     Networks networks = Networks::split;
 };
 BufferClasses buffer_classes(Networks networks);

@@ -68,6 +68,7 @@ Picture UntimedMachine::render(const std::function<void(int)>& progress) {
     Picture picture(frame.width, frame.height);
     const bool trace_rays = context_.settings.stage == RunStage::trace;
     if (trace_rays && context_.settings.shadows == Shadows::precast) precast();
+    precast_hops_ = rays_.ray_hops + rays_.return_hops;
     for (int y = 0; y < frame.height; ++y) {
         for (int x = 0; x < frame.width; ++x) {
             Pixel& pixel = picture.at(x, y);

@@ -37,6 +37,8 @@ class UntimedMachine {
     Picture render(const std::function<void(int row)>& progress = {});
 
     const RayCounts& rays() const { return rays_; }
+    /// Of all hops of rays and answers, those before tracing began.
+    std::uint64_t precast_hops() const { return precast_hops_; }
     const LoadCounts& loaded() const { return loaded_; }
     const std::vector<CellStore>& cells() const { return cells_; }
     StorageCounts storage() const;
@@ -70,6 +72,7 @@ class UntimedMachine {
     LoadCounts loaded_;
     std::vector<CellStore> cells_;
     RayCounts rays_;
+    std::uint64_t precast_hops_ = 0;
 };
 
 }  // namespace raycell

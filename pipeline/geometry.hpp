@@ -13,6 +13,8 @@ class Geometry : public Stage {
 
     /// Begins with the scene in the next cycle.
     void start() { environment().scheduler.wake(*this, environment().scheduler.now() + 1); }
+    /// Polygons of the scene that it is done with, sent on or found to lie outside the cube.
+    std::size_t polygons_taken() const { return polygon_; }
     /// Load messages in no link.
     std::size_t holds() const { return item_ ? 1 : 0; }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <stdexcept>
 #include <tuple>
 
@@ -143,18 +144,45 @@ bool Machine::watch(void* self, Cycle now) {
     }
     constexpr std::uint64_t calls_between_reports = 4096;
     if (machine.progress_ && ++machine.watch_calls_ % calls_between_reports == 0) {
-        constexpr const char* names[] = {"load", "precast", "trace"};
-        const std::uint64_t cells = std::uint64_t(env.width()) * std::uint64_t(env.height());
-        const RankProgress so_far = ranks ? ranks->agreed() : machine.progress();
-        machine.progress_({names[int(env.phase)], now, so_far.done, cells, so_far.hops});
+        machine.tell_progress(now);
     }
     return true;
 }
 
+/// The end-of-scene marks that count loaded cells come last, so they say nothing of how far loading is.
+double Machine::phase_share() const {
+    const Counters& c = environment_.counters;
+    const auto share = [](std::uint64_t done, std::uint64_t all) {
+        return all > 0 ? double(done) / double(all) : 0.0;
+    };
+    switch (environment_.phase) {
+        case Phase::load:
+            return share(geometry_.polygons_taken(), environment_.context.scene.polygons.size());
+        case Phase::precast:
+            return share(c.rays_answered + c.rays_silent, precast_rays_);
+        case Phase::trace:
+            return share(c.pixels_done, array_.cells().size());  // of several ranks, this one's
+    }
+    return 0;
+}
+
+void Machine::tell_progress(Cycle now) const {
+    constexpr const char* names[] = {"load", "precast", "trace"};
+    const RankProgress so_far = ranks_ ? ranks_->agreed() : progress();
+    const std::uint64_t cells = std::uint64_t(environment_.width()) * std::uint64_t(environment_.height());
+    progress_({names[int(environment_.phase)], now, so_far.done, cells, so_far.hops, phase_share(),
+               seconds_since(phase_began_)});
+}
+
 void Machine::run_phase(Phase phase, RunResult& result) {
-    const auto wall = std::chrono::steady_clock::now();
+    phase_began_ = std::chrono::steady_clock::now();
+    const std::clock_t processor = std::clock();
     environment_.phase = phase;
     environment_.phase_start = scheduler_.now();
+    if (phase == Phase::precast) {
+        for (const Cell& cell : array_.cells()) precast_rays_ += cell.store().voxels.size();
+        precast_rays_ *= environment_.context.sources.size();
+    }
     if (phase == Phase::load) {
         if (environment_.share.first == 0) geometry_.start();
     } else {
@@ -172,32 +200,44 @@ void Machine::run_phase(Phase phase, RunResult& result) {
                           ? std::max(totals_.last_progress, environment_.phase_start)
                           : scheduler_.now();
     const Cycle cycles = end - environment_.phase_start;
-    const double seconds = seconds_since(wall);
+    const double seconds = seconds_since(phase_began_);
+    const double worked = double(std::clock() - processor) / CLOCKS_PER_SEC;
     switch (phase) {
         case Phase::load:
-            result.load_cycles = cycles, result.wall_load = seconds;
+            result.load_cycles = cycles, result.wall_load = seconds, result.processor_load = worked;
             break;
         case Phase::precast:
-            result.precast_cycles = cycles, result.wall_precast = seconds;
+            result.precast_cycles = cycles, result.wall_precast = seconds, result.processor_precast = worked;
+            result.precast_hops =
+                totals_.rays.ray_hops + totals_.rays.return_hops;
             break;
         case Phase::trace:
-            result.trace_cycles = cycles, result.wall_trace = seconds;
+            result.trace_cycles = cycles, result.wall_trace = seconds, result.processor_trace = worked;
             break;
     }
+}
+
+void Machine::load(RunResult& result) {
+    if (preloaded_) {
+        start_loaded(result);
+        return;
+    }
+    activity_.begin(scheduler_.now(), environment_.counters, false);
+    run_phase(Phase::load, result);
+    activity_.finish(scheduler_.now() + 1, environment_.counters);
+    result.load_activity = activity_.activity();
+    join_activity(result.load_activity);
+    // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
+    result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
+    if (on_loaded_ && result.verdict == Verdict::completed) hand_over_loaded(result);
 }
 
 RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     progress_ = std::move(progress);
     RunResult result;
     const PictureSettings& settings = environment_.context.settings;
-    activity_.begin(scheduler_.now(), environment_.counters, false);
-    run_phase(Phase::load, result);
-    activity_.finish(scheduler_.now() + 1, environment_.counters);
-    result.load_activity = activity_.activity();
-    join_activity(result.load_activity);
+    load(result);
     activity_.begin(scheduler_.now() + 1, environment_.counters, true);
-    // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
-    result.buffers.push_back(buffer_use("load", 0, result.load_cycles));
     for (Link& link : array_.links()) link.reset_statistics();
     if (environment_.context.traffic) {
         for (Cell& cell : array_.cells()) {

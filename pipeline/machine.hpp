@@ -1,6 +1,7 @@
 // The whole machine: binds the stages, the array and the exterior, and runs the phases.
 #pragma once
 
+#include <chrono>
 #include <csignal>
 #include <functional>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "cells/array.hpp"
 #include "cells/wait_map.hpp"
+#include "model/array_file.hpp"
 #include "pipeline/activity.hpp"
 #include "pipeline/distribution.hpp"
 #include "pipeline/exterior.hpp"
@@ -17,6 +19,10 @@
 #include "pipeline/rank_exchange.hpp"
 
 namespace raycell {
+
+/// Whose loading a result tells of: its own, or that of the run that saved the array, which was an equal
+/// machine's or that of one with other buffers, links or costs.
+enum class LoadedBy { run, saved, saved_other_timing };
 
 enum class Verdict { completed, deadlock, livelock, cycle_limit, capacity, interrupted };
 const char* name_of(Verdict verdict);
@@ -74,10 +80,15 @@ struct RunResult {
     Activity load_activity;
     Activity activity;      ///< of precast and trace
     Cycle trace_start = 0;  ///< cycle in which tracing began; before it, from activity.start on, precast
+    LoadedBy loading = LoadedBy::run;
+    std::uint64_t precast_hops = 0;  ///< of all hops of rays and answers, those of the precast phase
     std::uint64_t schedule_hash = 0;
     double wall_load = 0;  ///< seconds
     double wall_precast = 0;
     double wall_trace = 0;
+    double processor_load = 0;  ///< seconds of this process
+    double processor_precast = 0;
+    double processor_trace = 0;
 };
 
 /// Progress of a run, for people.
@@ -87,6 +98,8 @@ struct RunProgress {
     std::uint64_t done;  ///< cells loaded or pixels complete
     std::uint64_t all;
     std::uint64_t hops;
+    double share;    ///< of the phase's work: polygons through the first stage, rays at their ends, pixels
+    double seconds;  ///< wall time since the phase began
 };
 
 class Machine : public sc_core::sc_module {
@@ -107,6 +120,15 @@ class Machine : public sc_core::sc_module {
     /// While `flag` is not 0 the run ends before its next cycle, with the verdict `interrupted` and what
     /// there is so far; for signal handlers. Null: nothing interrupts.
     void interrupt_by(const volatile std::sig_atomic_t* flag) { interrupt_ = flag; }
+
+    /// Instead of loading, starts with what another machine had loaded: its loading_key() must be this
+    /// one's. The schedule goes on from the cycle in which that one's loading ended. Not with random stalls,
+    /// whose draws go on. Throws std::invalid_argument for the array of another machine.
+    void use_loaded(LoadedArray array);
+    /// Called with the loaded array, once it is. Not after use_loaded().
+    void set_on_loaded(std::function<void(const LoadedArray&)> on_loaded) {
+        on_loaded_ = std::move(on_loaded);
+    }
 
     Array& array() { return array_; }
     Environment& environment() { return environment_; }
@@ -133,8 +155,15 @@ class Machine : public sc_core::sc_module {
 
   private:
     void bind_pipeline();
+    void load(RunResult& result);
+    // machine_loaded.cpp
+    void hand_over_loaded(RunResult& result);
+    void start_loaded(RunResult& result);
+    void visit_loading(std::vector<std::uint64_t>& numbers, bool taking, RunResult& result);
     void run_phase(Phase phase, RunResult& result);
     bool phase_complete() const;
+    void tell_progress(Cycle now) const;
+    double phase_share() const;
     void judge(RunResult& result);
     InFlight in_flight() const;
     void check_conservation(const InFlight& there, bool completed) const;
@@ -175,12 +204,16 @@ class Machine : public sc_core::sc_module {
     std::vector<std::unique_ptr<Link>> row_links_;
     std::function<void(const RunProgress&)> progress_;
     std::uint64_t watch_calls_ = 0;
+    std::chrono::steady_clock::time_point phase_began_;
+    std::uint64_t precast_rays_ = 0;
     ActivityRecorder activity_;
     Cycle drain_start_ = never;
     const volatile std::sig_atomic_t* interrupt_ = nullptr;
     bool interrupted_ = false;
     RankExchange* ranks_ = nullptr;  ///< null: the whole machine is here
     Counters totals_;                ///< of the whole machine, when a phase has ended
+    std::unique_ptr<LoadedArray> preloaded_;
+    std::function<void(const LoadedArray&)> on_loaded_;
 };
 
 template <typename T, typename Join>

@@ -32,6 +32,9 @@ class Stage : public sc_core::sc_module, public Client {
         return so_far;
     }
 
+    /// As another stage's were, at whose end this one starts.
+    void restore(const StageStatistics& statistics) { statistics_ = statistics; }
+
   protected:
     /// One cycle; returns the next one in which the stage wants to run of itself.
     virtual Cycle step(Cycle now) = 0;

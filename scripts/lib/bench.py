@@ -1,7 +1,6 @@
 """Runs raycell_bench case by case, a process each and all cases of an array in turn, and whole jobs; writes what each
-costs."""
+costs. A bench that was stopped goes on where it was."""
 import argparse
-import csv
 import json
 import pathlib
 import statistics
@@ -9,12 +8,19 @@ import subprocess
 import sys
 import tempfile
 
+from bench_growth import FIELDS as GROWTH_FIELDS
+from bench_growth import KEYS as GROWTH_KEYS
+from bench_growth import Design, measure_growth, scenes_of
+from bench_growth_report import line_rows, write_growth_chart, write_growth_table, write_line_chart
 from bench_report import write_chart, write_table
+from bench_rows import Rows, made_by, read_numbers
 
 CASES = ["sc_fifo", "cell_module", "cell_tile", "bare_cells", "bare_tokens"]
-FIELDS = ["case", "side", "round", "hops", "hops_per_second", "cycles_per_second", "build_seconds", "bytes_per_cell"]
-JOB_FIELDS = ["scene", "granularity", "side", "hops", "build", "load", "precast", "trace", "hops_per_second",
-              "bytes_per_cell", "peak_memory_bytes"]
+KEYS = ["case", "side", "round"]
+FIELDS = ["hops", "hops_per_second", "cycles_per_second", "build_seconds", "bytes_per_cell"]
+JOB_KEYS = ["scene", "granularity", "side"]
+JOB_FIELDS = ["hops", "build", "load", "precast", "trace", "hops_per_second", "bytes_per_cell", "peak_memory_bytes"]
+PARTS = ["cases", "jobs", "growth"]
 LARGE = 512  # cells a side; from there on modules take minutes to build: a third of the rounds
 LARGEST_MODULE_JOB = 128  # cells a side; above it modules take minutes
 
@@ -28,20 +34,27 @@ def run_case(program, case, side):
         sys.exit(f"bench: {' '.join(map(str, words))} ended with {done.returncode}: {done.stderr.strip()}")
     if result.get("error_occurred"):
         sys.exit(f"bench: {case} {side}: {result['error_message']}")
-    return {field: result[field] for field in FIELDS[3:]}
+    return {field: result[field] for field in FIELDS}
 
 
-def measure_cases(program, sides, rounds):
-    rows = []
+def measure_cases(program, sides, rounds, rows):
+    """A round of an array that was broken off is made again as a whole: ratios are of runs that follow each other."""
+    maker = made_by(program)
+    keys = []
     for side in sides:
         for turn in range(rounds if side < LARGE else max(1, rounds // 3)):
+            group = [(case, side, turn) for case in CASES]
+            keys += group
+            if all(rows.have(key, maker) for key in group):
+                continue
             for case in CASES:
-                rows.append({"case": case, "side": side, "round": turn, **run_case(program, case, side)})
-                print(f"{case} {side}, round {turn + 1}: {rows[-1]['hops_per_second'] / 1e6:.2f} M hops/s", flush=True)
-        hops = {row["hops"] for row in rows if row["side"] == side}
+                row = {"case": case, "side": side, "round": turn, **run_case(program, case, side), "made_by": maker}
+                rows.add(row)
+                print(f"{case} {side}, round {turn + 1}: {row['hops_per_second'] / 1e6:.2f} M hops/s", flush=True)
+        hops = {float(rows.rows[tuple(map(str, key))]["hops"]) for key in keys if key[1] == side}
         if len(hops) != 1:
             sys.exit(f"bench: the cases of {side} x {side} cells made {sorted(hops)} hops; expected one number")
-    return rows
+    rows.finish(keys)
 
 
 def measure_job(program, scene, granularity, side):
@@ -57,53 +70,94 @@ def measure_job(program, scene, granularity, side):
             "peak_memory_bytes": model["peak_memory_bytes"]}
 
 
-def write_csv(path, fields, rows):
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, fields, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
-
-
-def read_csv(path, words):
-    with path.open(newline="") as file:
-        return [{k: v if k in words else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+def measure_jobs(program, scene, sides, rows):
+    if not scene.is_file():
+        return rows.finish([])
+    maker = made_by(program, scene)
+    keys = [(scene.stem, granularity, side) for side in sides
+            for granularity in ["tile"] + (["cell"] if side <= LARGEST_MODULE_JOB else [])]
+    for _, granularity, side in keys:
+        if rows.have((scene.stem, granularity, side), maker):
+            continue
+        row = measure_job(program, scene, granularity, side)
+        rows.add({**row, "made_by": maker})
+        print(f"{scene.stem} {side}, {granularity}: {row['trace']:.1f} s of tracing", flush=True)
+    return rows.finish(keys)
 
 
 def numbers(text):
     return [int(word) for word in text.split(",") if word]
 
 
-def main():
+def parts(text):
+    chosen = text.split(",")
+    for part in chosen:
+        if part not in PARTS:
+            raise argparse.ArgumentTypeError(f"expected some of {', '.join(PARTS)}, not '{part}'")
+    return chosen
+
+
+def parse():
     parser = argparse.ArgumentParser(prog="scripts/bench")
     parser.add_argument("root", type=pathlib.Path)
     parser.add_argument("scenes", type=pathlib.Path, nargs="?")
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--sides", type=numbers, default=[32, 64, 128, 256, 512])
-    parser.add_argument("--jobs", type=numbers, default=[64, 128, 256, 512])
+    parser.add_argument("--only", type=parts, default=PARTS, help=f"some of {','.join(PARTS)}")
+    parser.add_argument("--rounds", type=int, help="of the cases (5) and of the growth (1)")
+    parser.add_argument("--sides", type=numbers, default=[32, 64, 128, 256, 512], help="arrays of the cases")
+    parser.add_argument("--jobs", type=numbers, default=[64, 128, 256, 512], help="arrays of the jobs")
+    parser.add_argument("--growth-sides", type=numbers, default=[32, 64, 128, 256, 512],
+                        help="arrays that a job grows by")
+    parser.add_argument("--growth-side", type=int, default=128, help="array of the other series")
+    parser.add_argument("--precast-side", type=int, default=128, help="largest array with precast shadows")
+    parser.add_argument("--depths", type=numbers, default=[64, 128, 256, 512, 1024, 2048, 4096])
+    parser.add_argument("--max-depths", type=numbers, default=[0, 1, 2, 3, 4])
+    parser.add_argument("--again", action="store_true", help="make every run again")
     parser.add_argument("--program-folder", type=pathlib.Path)
-    parser.add_argument("--out", type=pathlib.Path, help="results and chart go there")
+    parser.add_argument("--out", type=pathlib.Path, help="results and charts go there")
     parser.add_argument("--from-csv", action="store_true")
-    options = parser.parse_args()
+    return parser.parse_intermixed_args()  # the scenes may come last
+
+
+def measure(options, results):
     programs = options.program_folder or options.root / "build"
+    folder = options.scenes or options.root.parent / "shared/scenes/spd"
+    if "cases" in options.only:
+        measure_cases(programs / "raycell_bench", options.sides, options.rounds or 5,
+                      Rows(results / "bench.csv", KEYS, FIELDS, options.again))
+    if "jobs" in options.only:
+        measure_jobs(programs / "raycell", folder / "teapot-s4.nff", options.jobs,
+                     Rows(results / "bench_jobs.csv", JOB_KEYS, JOB_FIELDS, options.again))
+    if "growth" in options.only:
+        design = Design(options.growth_sides, options.growth_side, options.depths, options.max_depths,
+                        options.precast_side)
+        measure_growth(programs / "raycell", design.jobs(*scenes_of(folder, options.root)), options.rounds or 1,
+                       Rows(results / "bench_growth.csv", GROWTH_KEYS, GROWTH_FIELDS, options.again))
+
+
+def main():
+    options = parse()
     results = options.out or options.root / "results"
+    charts = options.out or options.root / "docs"
     results.mkdir(parents=True, exist_ok=True)
-    cases, jobs = results / "bench.csv", results / "bench_jobs.csv"
     if not options.from_csv:
-        write_csv(cases, FIELDS, measure_cases(programs / "raycell_bench", options.sides, options.rounds))
-        scene = (options.scenes or options.root.parent / "shared/scenes/spd") / "teapot-s4.nff"
-        rows = []
-        for side in options.jobs if scene.is_file() else []:
-            for granularity in ["tile"] + (["cell"] if side <= LARGEST_MODULE_JOB else []):
-                rows.append(measure_job(programs / "raycell", scene, granularity, side))
-                print(f"{scene.stem} {side}, {granularity}: {rows[-1]['trace']:.1f} s of tracing", flush=True)
-        write_csv(jobs, JOB_FIELDS, rows)
-    medians = {}
-    rows = read_csv(cases, {"case"})
-    for row in rows:
-        medians.setdefault((row["case"], int(row["side"])), []).append(row)
-    write_table(results / "bench.md", CASES, medians, read_csv(jobs, {"scene", "granularity"}))
-    write_chart((options.out or options.root / "docs") / "bench.png", CASES, {
-        key: statistics.median(row["hops_per_second"] for row in group) for key, group in medians.items()})
+        measure(options, results)
+    rows = read_numbers(results / "bench.csv", {"case"})
+    if rows:
+        medians = {}
+        for row in rows:
+            medians.setdefault((row["case"], int(row["side"])), []).append(row)
+        write_table(results / "bench.md", CASES, medians,
+                    read_numbers(results / "bench_jobs.csv", {"scene", "granularity"}))
+        write_chart(charts / "bench.png", CASES, {
+            key: statistics.median(row["hops_per_second"] for row in group) for key, group in medians.items()})
+    growth = read_numbers(results / "bench_growth.csv", {"scene", "shadows"})
+    if growth:
+        lines = write_growth_table(results / "bench_growth.md", growth, options.growth_side)
+        write_growth_chart(charts / "bench_growth.png", growth, options.growth_side)
+        if lines:
+            write_line_chart(charts / "bench_line.png", lines)
+            for scene, sides, slope, *each in line_rows(lines):
+                print(f"{scene}, {sides}: slope {slope}, ns per hop {each[0]} to {each[1]}, most / least {each[2]}")
 
 
 if __name__ == "__main__":

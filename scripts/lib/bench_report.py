@@ -47,8 +47,8 @@ def jobs_table(jobs):
     rows = [[job["scene"], f"{job['side']:.0f}²", job["granularity"], f"{job['hops'] / 1e6:.1f} M",
              *(f"{job[phase]:.2f}" for phase in ("build", "load", "trace")), f"{job['hops_per_second'] / 1e6:.2f} M",
              f"{job['bytes_per_cell']:.0f}", f"{job['peak_memory_bytes'] / 1e6:.0f} MB"] for job in jobs]
-    return table(["scene", "cells", "granularity", "hops", "build, s", "load, s", "trace, s", "hops/s", "bytes per cell",
-                  "peak"], rows)
+    return table(["scene", "cells", "granularity", "hops", "build, s", "load, s", "trace, s", "hops/s",
+                  "bytes per cell", "peak"], rows)
 
 
 def write_table(path, cases, groups, jobs):
@@ -56,9 +56,10 @@ def write_table(path, cases, groups, jobs):
     head = ["", *(f"{side}²" for side in sides)]
     rounds = max(len(group) for group in groups.values())
     lines = ["# What a hop costs", "",
-             f"`scripts/bench`: the same rays and answers, hop by hop, medians of {rounds} rounds; a process per run, all",
-             "cases of an array in turn; processor seconds. Every cell sends a ray that is under way for some sixteen cells; `tokens alone`",
-             "has no buffers, no units and no time, `sc_fifo` has no units and no time.", "", "## Hops per second", ""]
+             f"`scripts/bench`: the same rays and answers, hop by hop, medians of {rounds} rounds; a process per run,",
+             "all cases of an array in turn; processor seconds. Every cell sends a ray that is under way for some sixteen",
+             "cells; `tokens alone` has no buffers, no units and no time, `sc_fifo` has no units and no time.", "",
+             "## Hops per second", ""]
     lines += table(head, per_side(groups, cases, sides, lambda g: f"{median(g, 'hops_per_second') / 1e6:.2f} M"))
     lines += ["", "## Ratios", "", "Of runs that follow each other, median over the rounds.", ""]
     lines += table(head + ([f"goal at {GOAL_SIDE}²"] if GOAL_SIDE in sides else []), goals(groups, sides))

@@ -78,7 +78,7 @@ def activity(report, pixels):
     series = report.get("activity")
     if not isinstance(series, dict):
         return None
-    load = series.get("load", {})
+    load = series.get("load") or {}  # null where the array was loaded by another run
     figures = []
     if load.get("hops") and max(load["hops"]) > 0:
         widths = bucket_widths(load, len(load["hops"]))

@@ -14,6 +14,7 @@ from sweep_kinds import SWEEPS
 GROUP_SECONDS = 300  # of processor time in a job of a cluster
 PROGRESS_SECONDS = 10
 NAMED = 20  # so many missing runs are named
+SHARED_CODE = ["sweep_charts.py", "sweep_rows.py", "sweep_tables.py"]  # of all sweeps' tables and charts
 SNAKEMAKE = "/usr/bin/snakemake"
 
 
@@ -51,16 +52,18 @@ class SnakemakeSweep:
         suffixes = {each.suffixes for each in shared.values() if each}
         runs = {self.names[run]: {"seconds": self.runner.cost(run), "shared": shared[run] and shared[run].prefix}
                 for run in self.every}
-        code = sorted((self.command.root / "scripts" / "lib").resolve().glob(f"*{self.command.name}*.py"))
+        library = (self.command.root / "scripts" / "lib").resolve()
+        code = sorted([*library.glob(f"*{self.command.name}*.py"), *(library / name for name in SHARED_CODE)])
         return {"sweep": self.command.name, "words": self.words, "called": self.command.called,
                 "folder": os.getcwd(), "root": str(self.command.root.resolve()), "plan": str(self.plan_file),
-                "cache": str(self.cache), "products": str(self.products), "runs": runs, "chosen": [self.names[run] for run in self.chosen],
+                "cache": str(self.cache), "products": str(self.products), "runs": runs,
+                "chosen": [self.names[run] for run in self.chosen],
                 "suffixes": list(suffixes.pop()) if suffixes else [], "csv": self.command.places.csv.name,
                 "document": self.command.places.document.name, "charts": self.command.charts,
                 "code": [str(path) for path in code]}
 
     def prepare(self):
-        """Writes the plan. A file that is not the whole result of its run would pass for one by its name, so it goes."""
+        """Writes the plan. A file that is not the whole result of its run would pass for one by its name: it goes."""
         self.products.mkdir(parents=True, exist_ok=True)
         for run in self.every:
             if self.runner.load(run) is None:

@@ -62,7 +62,9 @@ class Reader {
             word = *text;
             // Empty is the default of file names; as anything else it is an error, found by the option's own
             // check.
-            if (word.empty() && (key == "view" || key == "scene")) return;
+            if (word.empty() &&
+                (key == "view" || key == "scene" || key == "save-array" || key == "load-array"))
+                return;
         } else if (const auto whole = node.value_exact<std::int64_t>()) {
             word = std::to_string(*whole);
         } else if (const auto truth = node.value_exact<bool>()) {

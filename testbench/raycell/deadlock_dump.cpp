@@ -81,6 +81,10 @@ nlohmann::ordered_json probing(nlohmann::ordered_json config, const RenderOption
     config["truth"] = false;
     config["quiet"] = true;
     config["output"] = prefix;
+    if (!options.save_array.empty()) {  // what the first run kept, the second needs not load
+        config["load-array"] = config["save-array"];
+        config["save-array"] = "";
+    }
     return config;
 }
 

@@ -9,6 +9,7 @@
 #include "testbench/raycell/cell_ranges.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/entry.hpp"
+#include "testbench/raycell/time_estimate.hpp"
 
 namespace raycell {
 namespace {
@@ -84,11 +85,7 @@ Granularity granularity_of(const RenderOptions& options) {
     return granularity;
 }
 
-void show_progress(const RunProgress& p) {
-    std::cerr << "\r" << p.phase << ": cycle " << p.cycle << ", " << p.done << " of " << p.all
-              << (std::string(p.phase) == "load" ? " cells loaded, " : " pixels done, ") << p.hops << " hops"
-              << std::flush;
-}
+void show_progress(const RunProgress& p) { std::cerr << "\r" << progress_line(p) << "\033[K" << std::flush; }
 
 int exit_code(Verdict verdict) {
     switch (verdict) {

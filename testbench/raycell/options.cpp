@@ -338,6 +338,13 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     table.flag("clip-truth", options.clip_truth, "clip the truth to the cube");
 }
 
+void add_array_options(OptionTable& table, RenderOptions& options) {
+    table.text("save-array", options.save_array, "FILE",
+               "keep the loaded array, for other traces of this scene and size");
+    table.text("load-array", options.load_array, "FILE",
+               "start with an array that --save-array kept, instead of loading it again");
+}
+
 void add_probe_options(OptionTable& table, RenderOptions& options) {
     ProbeOptions& p = options.probes;
     table.cells("probe", p.cells,

@@ -106,6 +106,8 @@ struct RenderOptions {
     std::vector<std::uint64_t> watch_rays;
     std::vector<CellRange> watch_pixels;
     ProbeOptions probes;
+    std::string save_array;         ///< file for the loaded array; empty: none
+    std::string load_array;         ///< file of a loaded array to start with; empty: none
     std::vector<CellRange> golden;  ///< cells whose messages are written
     std::vector<int> rank_rows;     ///< first rows of the ranks after the first; empty: even
 };
@@ -128,6 +130,8 @@ void add_granularity_options(OptionTable& table, RenderOptions& options);
 void add_watch_options(OptionTable& table, RenderOptions& options);
 /// The rest of render's.
 void add_machine_options(OptionTable& table, RenderOptions& options);
+/// Loaded arrays as files.
+void add_array_options(OptionTable& table, RenderOptions& options);
 /// Waveforms and golden vectors of cells.
 void add_probe_options(OptionTable& table, RenderOptions& options);
 

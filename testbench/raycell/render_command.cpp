@@ -11,6 +11,7 @@
 #include "model/truth/exterior.hpp"
 #include "model/truth/truth.hpp"
 #include "model/untimed.hpp"
+#include "testbench/raycell/array_files.hpp"
 #include "testbench/raycell/cells_csv.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
@@ -27,6 +28,7 @@
 #include "testbench/raycell/ray_watch.hpp"
 #include "testbench/raycell/report_json.hpp"
 #include "testbench/raycell/scene_input.hpp"
+#include "testbench/raycell/time_estimate.hpp"
 
 namespace raycell {
 namespace {
@@ -55,6 +57,8 @@ struct Run {
     RunResult result;
     double wall_build = 0;
     std::uint64_t bytes_per_cell = 0;
+    Forecast forecast;
+    ExpectedSeconds expected;
     std::string cells_csv;
     std::unique_ptr<ProbeRun> probes;   ///< null: none
     std::unique_ptr<GoldenRun> golden;  ///< null: none
@@ -62,9 +66,21 @@ struct Run {
     Json ranks;                         ///< empty: one process
 };
 
+/// What the run will take; a long one says so.
+void foretell(const RenderOptions& options, const CellScene& scene, const TruthRenderer* truth, Run& run) {
+    run.forecast = forecast(scene, options.picture, truth);
+    const auto cells = std::size_t(options.picture.width) * std::size_t(options.picture.height);
+    run.expected = expected_seconds(run.forecast, cells, options.hosts == Hosts::cell);
+    if (!options.load_array.empty()) run.expected.load = 0;
+    if (run.expected.sum() > long_run && !options.quiet)
+        std::cerr << expectation(run.forecast, run.expected) << '\n';
+}
+
 Run run_timed(const RenderOptions& options, const std::string& configuration, const CellScene& scene,
-              const ExteriorTracer* tracer, RankRun* ranks) {
+              const TruthRenderer* truth, const ExteriorTracer* tracer, RankRun* ranks) {
     Run run;
+    ArrayFiles arrays(options, scene);
+    if (!ranks || ranks->first()) foretell(options, scene, truth, run);
     const auto start = Clock::now();
     const std::uint64_t before = memory_bytes();
     // Never destroyed: SystemC takes ports down in quadratic time (minutes for 256x256 cells), and a process
@@ -77,6 +93,7 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     const std::uint64_t after = memory_bytes();
     run.bytes_per_cell = after > before ? (after - before) / cells : 0;
     run.wall_build = seconds_since(start);
+    arrays.attach(machine);
     CellObserverList observers;
     const std::unique_ptr<RayWatch> watch = watch_of(options, std::cout);
     if (watch) observers.add(*watch);
@@ -122,6 +139,7 @@ Run run_untimed(const RenderOptions& options, const CellScene& scene, const Exte
     const std::uint64_t after = memory_bytes();
     run.bytes_per_cell = after > before ? (after - before) / machine.cells().size() : 0;
     result.counters.rays = machine.rays();
+    result.precast_hops = machine.precast_hops();
     result.geometry.items = machine.loaded().polygons;
     result.precomputation.items = machine.loaded().trapezes;
     result.distribution.items = machine.loaded().spans;
@@ -129,6 +147,15 @@ Run run_untimed(const RenderOptions& options, const CellScene& scene, const Exte
     run.cells_csv = cells_csv(machine);
     if (result.storage.overflowed > 0) result.verdict = Verdict::capacity;
     return run;
+}
+
+Json expected_report(const Run& run) {
+    const Forecast& f = run.forecast;
+    const ExpectedSeconds& s = run.expected;
+    return {{"hops", {{"load", f.load_hops}, {"precast", f.precast_hops}, {"trace", f.trace_hops}}},
+            {"load_steps", f.load_steps},
+            {"voxels", f.voxels},
+            {"seconds", {{"load", s.load}, {"precast", s.precast}, {"trace", s.trace}}}};
 }
 
 Json model_report(const Run& run) {
@@ -140,6 +167,9 @@ Json model_report(const Run& run) {
               {"load", r.wall_load},
               {"precast", r.wall_precast},
               {"trace", r.wall_trace}}},
+            {"processor_seconds",
+             {{"load", r.processor_load}, {"precast", r.processor_precast}, {"trace", r.processor_trace}}},
+            {"expected", expected_report(run)},
             {"hops_per_second", seconds > 0 ? hops / seconds : 0.0},
             {"peak_memory_bytes", peak_memory_bytes()},
             {"bytes_per_cell", run.bytes_per_cell}};
@@ -181,6 +211,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
     check_probes(options);
     check_golden(options);
     check_ranks(options);
+    check_arrays(options);
     const auto start = Clock::now();
     const auto read = [&] {
         check_output(options.prefix);
@@ -193,19 +224,19 @@ int run(const RenderOptions& options, const OptionTable& table) {
     };
     const std::unique_ptr<RankRun> ranks = launched_ranks().count > 1 ? std::make_unique<RankRun>() : nullptr;
     const CellScene scene = ranks ? ranks->share_scene(read) : read();
-    const bool exterior = options.picture.exterior == ExteriorMode::host &&
-                          options.picture.stage == RunStage::trace && (!ranks || ranks->first());
+    const bool traces = options.picture.stage == RunStage::trace && (!ranks || ranks->first());
+    const bool exterior = options.picture.exterior == ExteriorMode::host && traces;
     std::unique_ptr<TruthRenderer> whole;
     std::unique_ptr<ClassicalExterior> tracer;
-    if (exterior) {
+    if (exterior || (traces && options.engine == Engine::timed)) {  // for the forecast alone, too
         whole = std::make_unique<TruthRenderer>(
             scene, TruthSettings{options.picture.max_depth, options.picture.min_weight});
-        tracer = std::make_unique<ClassicalExterior>(scene, *whole);
     }
+    if (exterior) tracer = std::make_unique<ClassicalExterior>(scene, *whole);
     const double wall_placing = seconds_since(start);
     const Json config = table.values();
     Run done = options.engine == Engine::timed
-                   ? run_timed(options, to_toml(config), scene, tracer.get(), ranks.get())
+                   ? run_timed(options, to_toml(config), scene, whole.get(), tracer.get(), ranks.get())
                    : run_untimed(options, scene, tracer.get());
     done.wall_build += wall_placing;
     if (ranks && !ranks->first()) {
@@ -253,6 +284,7 @@ Command add_render_command(CLI::App& program) {
     add_scene_options(*table, *options);
     add_machine_options(*table, *options);
     add_watch_options(*table, *options);
+    add_array_options(*table, *options);
     add_probe_options(*table, *options);
     add_rank_options(*app, *options);
     return {app, [options, table] { return run(*options, *table); }};

@@ -58,6 +58,18 @@ Json load_activity(const Activity& a) {
             {"cells_loaded", loaded}};
 }
 
+const char* name_of(LoadedBy loading) {
+    switch (loading) {
+        case LoadedBy::run:
+            return "run";
+        case LoadedBy::saved:
+            return "saved";
+        case LoadedBy::saved_other_timing:
+            return "saved_other_timing";
+    }
+    return "";
+}
+
 }  // namespace
 
 std::string to_text(const Json& json) {
@@ -100,6 +112,7 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
         {"traversal", {{"utilisation", cell_cycles > 0 ? double(c.traversal_cycles) / cell_cycles : 0.0}}},
         {"shading", {{"utilisation", cell_cycles > 0 ? double(c.shading_cycles) / cell_cycles : 0.0}}}};
     json["hops"] = {{"load", c.load_hops}, {"ray", c.rays.ray_hops}, {"return", c.rays.return_hops}};
+    json["precast"] = {{"hops", result.precast_hops}};
     json["rays"] = {{"primary", c.rays.primary},     {"reflected", c.rays.reflected},
                     {"refracted", c.rays.refracted}, {"shadow", c.rays.shadow},
                     {"precast", c.rays.precast},     {"lost", c.rays.lost},
@@ -154,11 +167,13 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
     json["deadlock"]["ledger"] = ledger_json(result);
     json["deadlock"]["time_outs"] = time_outs_json(result);
     if (result.waits.deadlocked()) json["deadlock"]["knot"] = knot_json(result);
-    if (!result.load_activity.buckets.empty()) {
+    const bool loaded_here = !result.load_activity.buckets.empty();
+    if (loaded_here || result.loading != LoadedBy::run) {
         json["activity"] = activity(result.activity);
         json["activity"]["trace_start"] = result.trace_start;
-        json["activity"]["load"] = load_activity(result.load_activity);
+        json["activity"]["load"] = loaded_here ? load_activity(result.load_activity) : Json();
     }
+    json["loading"] = name_of(result.loading);
     json["cube"] = {{"depth_cells", scene.frame.depth},
                     {"cell_width_world", scene.frame.cell_width},
                     {"polygons", scene.polygons.size()}};

@@ -31,7 +31,8 @@ CellScene scene_of(std::uint64_t seed) {
 
 LoadedArray array_of(const CellScene& scene, const PictureSettings& settings) {
     LoadedArray array;
-    array.key = loading_key(scene, settings, MachineSettings());
+    array.key = loading_key(scene, settings);
+    array.timing = loading_timing(MachineSettings());
     array.cells = load_array(scene, settings, Arithmetic(settings.numbers, extent_of(scene.frame)));
     array.counts = {1, 2, ~std::uint64_t(0)};
     return array;
@@ -64,6 +65,7 @@ TEST(ArrayFile, EveryBitComesBack) {
         const std::string bytes = bytes_of(array);
         const LoadedArray again = array_from(bytes);
         EXPECT_EQ(again.key, array.key);
+        EXPECT_EQ(again.timing, array.timing);
         EXPECT_EQ(again.counts, array.counts);
         ASSERT_EQ(again.cells.size(), array.cells.size());
         EXPECT_EQ(bytes_of(again), bytes);
@@ -102,28 +104,61 @@ TEST(ArrayFile, DamageIsFoundWhereverItIs) {
     EXPECT_THROW(array_from(""), std::runtime_error);
 }
 
-TEST(ArrayFile, TheKeyTellsApartWhatLoadingDependsOn) {
+/// Every setting that voxels depend on, changed alone.
+TEST(ArrayFile, TheKeyTellsApartWhatVoxelsDependOn) {
     const CellScene scene = scene_of(3);
     const PictureSettings picture;
-    const MachineSettings machine;
-    const std::uint64_t key = loading_key(scene, picture, machine);
-    EXPECT_EQ(loading_key(scene, picture, machine), key);
-    CellScene moved = scene;
-    moved.polygons.at(0).vertices.at(0).x += 1e-9;
-    EXPECT_NE(loading_key(moved, picture, machine), key);
-    PictureSettings other = picture;
-    other.numbers.word_bits = 21;
-    EXPECT_NE(loading_key(scene, other, machine), key);
-    MachineSettings narrow = machine;
-    narrow.link_bits = 19;
-    EXPECT_NE(loading_key(scene, picture, narrow), key);
-    MachineSettings tracing = machine;
-    tracing.ray_store = 3;
-    tracing.networks = Networks::quadrant;
-    tracing.costs.walk_step = 9;
-    other = picture;
-    other.max_depth = 9;
-    EXPECT_EQ(loading_key(scene, other, tracing), key) << "what only tracing depends on";
+    const std::uint64_t key = loading_key(scene, picture);
+    EXPECT_EQ(loading_key(scene, picture), key);
+    const auto changed = [&](auto change) {
+        PictureSettings other = picture;
+        change(other);
+        return loading_key(scene, other);
+    };
+    EXPECT_NE(changed([](PictureSettings& p) { p.hit = HitTest::mask; }), key);
+    EXPECT_NE(changed([](PictureSettings& p) { p.normals = Normals::voxel; }), key);
+    EXPECT_NE(changed([](PictureSettings& p) { p.display = Display::gouraud; }), key);
+    EXPECT_NE(changed([](PictureSettings& p) { p.voxel_capacity = 9; }), key);
+    EXPECT_NE(changed([](PictureSettings& p) { p.numbers.word_bits = 21; }), key);
+    EXPECT_NE(changed([](PictureSettings& p) { p.numbers.arithmetic = Numbers::exact; }), key);
+    EXPECT_NE(changed([](PictureSettings& p) { p.numbers.rounding = Rounding::truncate; }), key);
+    const auto other_scene = [&](auto change) {
+        CellScene other = scene;
+        change(other);
+        return loading_key(other, picture);
+    };
+    EXPECT_NE(other_scene([](CellScene& s) { s.frame.depth_levels *= 2; }), key);
+    EXPECT_NE(other_scene([](CellScene& s) { s.frame.width += 1; }), key);
+    EXPECT_NE(other_scene([](CellScene& s) { s.frame.depth += 1e-9; }), key);
+    EXPECT_NE(other_scene([](CellScene& s) { s.polygons.at(0).vertices.at(0).x += 1e-9; }), key);
+    EXPECT_NE(other_scene([](CellScene& s) { s.objects.at(0).shine += 1; }), key);
+    EXPECT_NE(other_scene([](CellScene& s) { s.sources.emplace_back(); }), key);
+
+    EXPECT_EQ(changed([](PictureSettings& p) {
+                  p.max_depth = 9, p.min_weight = 0.1, p.shadows = Shadows::memo, p.stage = RunStage::load;
+                  p.exterior = ExteriorMode::none, p.normal_offset = 0.1;
+                  p.numbers.operators.root = Iteration::table;
+              }),
+              key)
+        << "what only tracing depends on";
+}
+
+TEST(ArrayFile, TheTimingTellsApartWhatItsCyclesDependOn) {
+    const std::uint64_t timing = loading_timing(MachineSettings());
+    const auto changed = [](auto change) {
+        MachineSettings other;
+        change(other);
+        return loading_timing(other);
+    };
+    EXPECT_NE(changed([](MachineSettings& m) { m.link_bits = 19; }), timing);
+    EXPECT_NE(changed([](MachineSettings& m) { m.buffer_depth = 2; }), timing);
+    EXPECT_NE(changed([](MachineSettings& m) { m.costs.load_voxel = 13; }), timing);
+    EXPECT_NE(changed([](MachineSettings& m) { m.costs.geometry_polygon = 41; }), timing);
+    EXPECT_EQ(changed([](MachineSettings& m) {
+                  m.ray_store = 3, m.networks = Networks::quadrant, m.costs.walk_step = 9, m.seed = 7;
+              }),
+              timing)
+        << "what only tracing depends on";
 }
 
 }  // namespace

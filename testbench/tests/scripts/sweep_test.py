@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """Tests of scripts/sweep: sweep_test.py CASE SWEEP_SCRIPT PROGRAM FOLDER [OTHER_FOLDER]. FOLDER is emptied first."""
+import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -92,9 +94,20 @@ class Test:
         mine, its = ((folder / "accuracy.csv").read_text() for folder in (self.out, pathlib.Path(other)))
         expect(mine == its, "the same CSV as chart_accuracy's")
         expect(not list(self.out.glob("cache/*/work")), "no pictures left")
+        self.expect_code_of_tables()
         listed = subprocess.run([pathlib.Path(self.script).parent / "chart_accuracy", *self.words(
             "", self.program, [])[2:], "--list"], capture_output=True, text=True).stdout
         expect("26 distinct runs, 8 timed, 26 finished" in listed, "chart_accuracy takes the runs for finished")
+
+    def expect_code_of_tables(self):
+        """Tables are made again when anything changes that makes them: all that their modules import of ours."""
+        plan, = self.out.glob("**/plan.json")
+        code = {pathlib.Path(path).stem: pathlib.Path(path) for path in json.loads(plan.read_text())["code"]}
+        makers = [path for name, path in code.items() if name.endswith(("_tables", "_pictures", "_rows"))]
+        for path in makers:
+            for module in re.findall(r"^(?:from|import) (\w+)", path.read_text(), re.MULTILINE):
+                ours = (path.parent / f"{module}.py").exists()
+                expect(not ours or module in code, f"{module}, which {path.name} imports, among what makes the tables")
 
     def failure(self):
         """A run that fails is named, ends no other, and alone is made again; until then there are no tables."""

@@ -23,6 +23,8 @@ void expect_equal_engines(const Workshop& workshop, const fs::path& scene, const
         // A postponed ray crosses its links again.
         EXPECT_EQ(timed.at("hops").at("ray"), untimed.at("hops").at("ray"));
         EXPECT_EQ(timed.at("hops").at("return"), untimed.at("hops").at("return"));
+        EXPECT_EQ(timed.at("precast").at("hops"), untimed.at("precast").at("hops"));
+        EXPECT_EQ(timed.at("precast").at("hops") > 0, timed.at("rays").at("precast") > 0);
     }
 }
 

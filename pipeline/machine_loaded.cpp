@@ -1,0 +1,107 @@
+// What a machine is once it is loaded, apart from its voxels: so that a run that starts with a saved array
+// goes on in the same cycles, with the same schedule and the same figures of loading, as the one that saved
+// it.
+#include <cstring>
+#include <stdexcept>
+
+#include "model/array_file.hpp"
+#include "pipeline/machine.hpp"
+
+namespace raycell {
+namespace {
+
+/// Goes over the counts in one order, to note them down or to take them back.
+class Counts {
+  public:
+    Counts(std::vector<std::uint64_t>& counts, bool taking) : counts_(counts), taking_(taking) {}
+    template <typename T>
+    void visit(T& value) {
+        if (!taking_) {
+            counts_.push_back(std::uint64_t(value));
+        } else {
+            if (at_ == counts_.size()) throw std::runtime_error("a loaded array: counts are missing");
+            value = T(counts_[at_++]);
+        }
+    }
+    void visit_real(double& value) {
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &value, sizeof bits);
+        visit(bits);
+        std::memcpy(&value, &bits, sizeof value);
+    }
+    void finish() const {
+        if (taking_ && at_ != counts_.size()) throw std::runtime_error("a loaded array: too many counts");
+    }
+
+  private:
+    std::vector<std::uint64_t>& counts_;
+    bool taking_;
+    std::size_t at_ = 0;
+};
+
+void visit_stage(Counts& counts, StageStatistics& stage) {
+    counts.visit(stage.items);
+    counts.visit(stage.busy_cycles);
+}
+
+}  // namespace
+
+void Machine::visit_loading(std::vector<std::uint64_t>& numbers, bool taking, RunResult& result) {
+    Counts counts(numbers, taking);
+    Cycle now = scheduler_.now();
+    counts.visit(now);
+    scheduler_.set_now(now);
+    counts.visit(result.load_cycles);
+    StageStatistics stages[] = {geometry_.statistics(), precomputation_.statistics(),
+                                distribution_.statistics()};
+    for (StageStatistics& stage : stages) visit_stage(counts, stage);
+    if (taking) {
+        geometry_.restore(stages[0]);
+        precomputation_.restore(stages[1]);
+        distribution_.row(0).restore(stages[2]);  // what counts is the sum
+    }
+    Counters& c = environment_.counters;
+    for (std::uint64_t* count :
+         {&c.load_hops, &c.loads_sent, &c.loads_delivered, &c.cells_loaded, &c.last_progress})
+        counts.visit(*count);
+    counts.visit(result.buffers.front().peak);
+    counts.visit_real(result.buffers.front().mean);
+    for (Cell& cell : array_.cells()) {
+        Cell::Loading loading = cell.loading();
+        counts.visit(loading.hash);
+        counts.visit(loading.hops);
+        cell.restore(loading);
+    }
+    counts.finish();
+}
+
+void Machine::use_loaded(LoadedArray array) {
+    if (array.key != loading_key(environment_.context.scene, environment_.settings) ||
+        array.cells.size() != array_.cells().size())
+        throw std::invalid_argument("a loaded array of another scene, size or voxels");
+    preloaded_ = std::make_unique<LoadedArray>(std::move(array));
+}
+
+/// The voxels are lent, not copied: they are most of what a loaded machine takes.
+void Machine::hand_over_loaded(RunResult& result) {
+    LoadedArray array;
+    array.key = loading_key(environment_.context.scene, environment_.settings);
+    array.timing = loading_timing(environment_.machine);
+    visit_loading(array.counts, false, result);
+    for (Cell& cell : array_.cells()) array.cells.push_back(std::move(cell.store()));
+    on_loaded_(array);
+    for (std::size_t i = 0; i < array.cells.size(); ++i)
+        array_.cells()[i].store() = std::move(array.cells[i]);
+}
+
+void Machine::start_loaded(RunResult& result) {
+    const bool same = preloaded_->timing == loading_timing(environment_.machine);
+    result.loading = same ? LoadedBy::saved : LoadedBy::saved_other_timing;
+    result.buffers.push_back({"load", 0, 0});
+    visit_loading(preloaded_->counts, true, result);
+    for (std::size_t i = 0; i < preloaded_->cells.size(); ++i)
+        array_.cells()[i].store() = std::move(preloaded_->cells[i]);
+    preloaded_.reset();
+}
+
+}  // namespace raycell
