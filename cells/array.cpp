@@ -5,6 +5,7 @@
 #include "cells/split_link.hpp"
 
 namespace raycell {
+
 bool Granularity::is_module(int x, int y) const {
     return every_cell || std::any_of(detail.begin(), detail.end(),
                                      [&](const CellRange& range) { return range.contains(x, y); });
@@ -82,9 +83,8 @@ void Array::make_link(int x, int y, Side side) {
 
 /// A link into cell (to_x, to_y); `side` is its source's.
 Link& Array::add_link(int to_x, int to_y, Side side) {
-    Link& link =
-        links_.emplace_back(environment_.scheduler, environment_.classes.count,
-                            environment_.machine.buffer_depth, used_classes(environment_.classes, side));
+    Link& link = links_.emplace_back(environment_.scheduler, environment_.classes.count,
+                                     environment_.machine.buffer_depth, environment_.classes.used_over(side));
     ways_.push_back(std::uint32_t(index(to_x, to_y)) * side_count + std::uint32_t(side));
     return link;
 }
@@ -109,9 +109,8 @@ void Array::make_half_links(SplitLinks& split, int y, Side outwards) {
 }
 
 void Array::make_half_link_out(SplitLinks& split, int x, int y, Side side) {
-    Link& link =
-        split.make_source(environment_.scheduler, environment_.classes.count,
-                          environment_.machine.buffer_depth, used_classes(environment_.classes, side));
+    Link& link = split.make_source(environment_.scheduler, environment_.classes.count,
+                                   environment_.machine.buffer_depth, environment_.classes.used_over(side));
     stall(link, x, y, side);
     link.connect_source(cell(x, y));
     bind_out(x, y, side, link);

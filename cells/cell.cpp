@@ -15,7 +15,7 @@ Cell::Cell(Environment& environment, int x, int y)
 
 void Cell::elaborate() {
     for (int side = 0; side < side_count; ++side) {
-        if (Link* out = out_[std::size_t(side)]) out->tell_room(&room_made_, 1U << unsigned(side));
+        if (Link* out = out_[std::size_t(side)]) out->tell_room(1U << unsigned(side));
         Link* in = in_[std::size_t(side)];
         if (!in) continue;
         const bool horizontal = side % 2 == 0;
@@ -27,7 +27,7 @@ void Cell::elaborate() {
                 bits |= 1U << ray_input_count_;
                 ray_inputs_[ray_input_count_++] = {Side(side), std::uint8_t(index)};
             }
-            if (bits) in->watch(index, &pending_, bits);
+            if (bits) in->watch(index, bits);
         }
     }
     if (!load_in_) load_in_ = in_[std::size_t(Side::west)];

@@ -253,10 +253,10 @@ class alignas(64) Cell final : public Client {
     Cycle next_ = never;
     std::uint16_t x_;
     std::uint16_t y_;
-    std::uint32_t pending_ = 0;    ///< buffers that hold anything, arrived or on the wires
+    // pending_: buffers that hold anything, arrived or on the wires. room_made_: a bit per output behind
+    // which room was made since somebody parked on it. Both are the client's.
     std::uint32_t decided_ = 0;    ///< rays whose test is over
     std::uint32_t parked_ = 0;     ///< rays and answers that wait for room behind an output
-    std::uint32_t room_made_ = 0;  ///< bit per output: room was made since somebody parked on it
     std::uint32_t next_test_ = 0;  ///< round robin over places
     Traversal traversal_;
     RayPacket* own_ = nullptr;    ///< primary or precast ray on its way out

@@ -8,8 +8,11 @@
 namespace raycell {
 
 Link::Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used)
-    : scheduler_(scheduler), depth_(std::uint16_t(depth)), classes_(std::uint8_t(classes)) {
-    static_assert(sizeof(Buffer) == 64);
+    : scheduler_(scheduler),
+      depth_(std::uint16_t(depth)),
+      classes_(std::uint8_t(classes & 15)),
+      room_bits_(0) {
+    static_assert(sizeof(Buffer) == 64 && sizeof(Link) == (1 + own_buffers) * 64);
     if (depth < 1 || depth > most_depth || classes > most_classes)
         throw std::invalid_argument("a link of " + std::to_string(depth) +
                                     " messages a buffer; expected 1 to " + std::to_string(most_depth));
@@ -18,7 +21,7 @@ Link::Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used)
     for (int index = 0; index < classes; ++index) {
         if (used >> index & 1) places_[std::size_t(index)] = buffers++;
     }
-    if (buffers > own_buffers) more_buffers_ = std::make_unique<Buffer[]>(buffers - own_buffers);
+    if (buffers > own_buffers) extras().more_buffers = std::make_unique<Buffer[]>(buffers - own_buffers);
 }
 
 std::size_t Link::bytes(std::uint32_t used) {
@@ -81,16 +84,11 @@ void Link::Buffer::grow(int depth) {
     capacity = larger;
 }
 
-void Link::watch(int index, std::uint32_t* pending, std::uint32_t bits) {
-    pending_ = pending;
+void Link::watch(int index, std::uint32_t bits) {
+    if (!sink_) throw std::logic_error("a link without a sink is watched");
     Buffer& b = buffer(index);
     b.pending_bits = bits;
-    if (b.count > 0) *pending |= bits;
-}
-
-void Link::tell_room(std::uint32_t* room_made, std::uint32_t bits) {
-    room_made_ = room_made;
-    room_bits_ = bits;
+    if (b.count > 0) sink_->pending_ |= bits;
 }
 
 Link::ClassStatistics Link::statistics(int index) const {

@@ -99,12 +99,12 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     /// Cycle from which on the oldest message has been both arrived and the oldest.
     Cycle head_since(int index) const;
     void pop(int index) override;
-    /// Asks the link to keep `bits` set in `pending` while the buffer of a class holds anything, on the wires
-    /// or arrived: so a cell need not look into empty buffers. One `pending` for all classes.
-    void watch(int index, std::uint32_t* pending, std::uint32_t bits);
-    /// Asks the link to set `bits` in `room_made` when a sender that can_send() has refused for want of room
-    /// is woken: until then it need not ask again.
-    void tell_room(std::uint32_t* room_made, std::uint32_t bits);
+    /// Asks the link to keep `bits` set in its sink's pending_ while the buffer of a class holds anything, on
+    /// the wires or arrived: so a cell need not look into empty buffers. Throws std::logic_error without a sink.
+    void watch(int index, std::uint32_t bits);
+    /// Asks the link to set `bits`, of 0 to 15, in its source's room_made_ when a sender that can_send() has
+    /// refused for want of room is woken: until then it need not ask again.
+    void tell_room(std::uint32_t bits) { room_bits_ = std::uint8_t(bits & 15U); }
     /// Whether a sender was refused for want of room and none has been made since.
     bool sender_waits(int index) const { return buffer(index).sender_waits; }
     int occupancy(int index) const override {
@@ -188,6 +188,7 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         std::uint64_t stall_who = 0;
         std::uint64_t sends = 0;
         std::string name;
+        std::unique_ptr<Buffer[]> more_buffers;  ///< beyond the link's own
     };
 
     static constexpr std::uint8_t no_buffer = 255;
@@ -196,7 +197,7 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         return place == no_buffer ? nullptr : &buffer_at(place);
     }
     Buffer& buffer_at(std::uint8_t place) {
-        return place < own_buffers ? buffers_[place] : more_buffers_[place - own_buffers];
+        return place < own_buffers ? buffers_[place] : extras_->more_buffers[place - own_buffers];
     }
     const Buffer& buffer_at(std::uint8_t place) const { return const_cast<Link*>(this)->buffer_at(place); }
     Buffer& buffer(int index) { return buffer_at(places_[std::size_t(index)]); }
@@ -209,17 +210,13 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     Scheduler& scheduler_;
     Cycle wires_free_ = 0;
     std::uint16_t depth_;
-    std::uint8_t classes_;
+    std::uint8_t classes_ : 4;
+    std::uint8_t room_bits_ : 4;                     ///< of the source's room_made_
     std::array<std::uint8_t, most_classes> places_;  ///< of the classes' buffers
     Client* sink_ = nullptr;
-    std::uint32_t* pending_ = nullptr;  ///< the sink's
-    std::unique_ptr<Extras> extras_;
-    // Second line.
     Client* source_ = nullptr;
-    std::uint32_t* room_made_ = nullptr;  ///< the source's
-    std::uint32_t room_bits_ = 0;
-    static constexpr std::size_t own_buffers = 3;  ///< all that a link between cells has, but with `quadrant`
-    std::unique_ptr<Buffer[]> more_buffers_;
+    std::unique_ptr<Extras> extras_;
+    static constexpr std::size_t own_buffers = 3;  ///< all that a link between cells has
     std::array<Buffer, own_buffers> buffers_;
 };
 
@@ -252,7 +249,7 @@ inline void Link::send(int index, const Message& message, int cycles, int later)
     wires_free_ = now + Cycle(cycles);
     b.at(b.count) = {message, wires_free_};
     ++b.count;
-    if (pending_) *pending_ |= b.pending_bits;
+    if (sink_) sink_->pending_ |= b.pending_bits;
     ++b.sent;
     b.occupied -= now;
     // A place read in this cycle still counts: the peak must not depend on which end ran first.
@@ -271,7 +268,7 @@ inline void Link::pop(int index) {
     b.occupied += now;
     b.head = std::uint16_t(b.wrapped(1));
     --b.count;
-    if (b.count == 0 && pending_) *pending_ &= ~b.pending_bits;
+    if (b.count == 0 && sink_) sink_->pending_ &= ~b.pending_bits;
     if (b.last_pop != now) {
         b.last_pop = now;
         b.popped_now = 0;
@@ -279,8 +276,9 @@ inline void Link::pop(int index) {
     ++b.popped_now;
     if (b.sender_waits) {
         b.sender_waits = false;
-        if (room_made_) *room_made_ |= room_bits_;
-        if (source_) scheduler_.wake(*source_, now + 1);
+        if (!source_) return;
+        source_->room_made_ |= room_bits_;
+        scheduler_.wake(*source_, now + 1);
     }
 }
 

@@ -170,6 +170,7 @@ void Probe::sample_buffer(const Cell& cell, BufferSignals& buffer, Cycle now) {
     vcd_.set(buffer.occupancy, std::uint64_t(buffer.last_occupancy));
     Head head = head_of(buffer.link->front(buffer.index));
     if (head.type == no_message && buffer.last_occupancy > 0) head.type = on_wires;
+    buffer.on_wires = head.type == on_wires;
     vcd_.set(buffer.type, head.type);
     vcd_.set(buffer.ray, head.ray);
     vcd_.set(buffer.stall, std::uint64_t(cell.stall_of(*buffer.link, buffer.index, now)));
@@ -210,10 +211,10 @@ void Probe::sample_cell(CellSignals& signals, Cycle now) {
 void Probe::sample_all(Cycle now, bool everything) {
     vcd_.set(phase_, std::uint64_t(env_.phase));
     for (CellSignals& cell : cells_) {
-        // A cell changes when it runs, its buffers also when a neighbour sends. (A message that comes to be
-        // seen wakes its cell, and so does room at an output that the cell was told is full.)
+        // A cell changes when it runs, its buffers also when a neighbour sends and when what was sent comes
+        // to be seen. (Room at an output that the cell was told is full wakes it.)
         const auto changed = [](const BufferSignals& buffer) {
-            return buffer.link->occupancy(buffer.index) != buffer.last_occupancy;
+            return buffer.on_wires || buffer.link->occupancy(buffer.index) != buffer.last_occupancy;
         };
         if (everything || cell.cell->woken() == now ||
             std::any_of(cell.buffers.begin(), cell.buffers.end(), changed)) {

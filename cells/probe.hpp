@@ -42,6 +42,7 @@ class Probe {
         const Link* link;
         int index;
         int last_occupancy;
+        bool on_wires = false;  ///< all that it held then: it will be seen without anybody running
         Signal full, occupancy, type, ray, stall;
     };
     struct UnitSignals {

@@ -22,8 +22,14 @@ class Client {
     /// Last cycle in which it was activated; `never` before the first.
     Cycle woken() const { return woken_; }
 
+  protected:
+    // Bits that links keep for their ends: Link::watch() and Link::tell_room().
+    std::uint32_t pending_ = 0;
+    std::uint32_t room_made_ = 0;
+
   private:
     friend class Scheduler;
+    friend class Link;
     Cycle woken_ = never;
     Cycle due_ = never;  ///< last cycle for which it was noted
 };

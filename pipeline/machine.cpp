@@ -208,8 +208,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
             break;
         case Phase::precast:
             result.precast_cycles = cycles, result.wall_precast = seconds, result.processor_precast = worked;
-            result.precast_hops =
-                totals_.rays.ray_hops + totals_.rays.return_hops;
+            result.precast_hops = totals_.rays.ray_hops + totals_.rays.return_hops;
             break;
         case Phase::trace:
             result.trace_cycles = cycles, result.wall_trace = seconds, result.processor_trace = worked;

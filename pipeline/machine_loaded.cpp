@@ -99,6 +99,7 @@ void Machine::start_loaded(RunResult& result) {
     result.loading = same ? LoadedBy::saved : LoadedBy::saved_other_timing;
     result.buffers.push_back({"load", 0, 0});
     visit_loading(preloaded_->counts, true, result);
+    totals_ = environment_.counters;
     for (std::size_t i = 0; i < preloaded_->cells.size(); ++i)
         array_.cells()[i].store() = std::move(preloaded_->cells[i]);
     preloaded_.reset();

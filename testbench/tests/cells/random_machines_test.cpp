@@ -228,7 +228,8 @@ void expect_true_verdict(const Drawn& drawn, Machine& machine, const RunResult& 
             break;
         case Verdict::cycle_limit:
         case Verdict::capacity:
-            ADD_FAILURE() << "neither has a limit here";
+        case Verdict::interrupted:
+            ADD_FAILURE() << "nothing limits or interrupts it here";
     }
     // In the precast phase no pixel is under way yet; while tracing one at least is missing.
     EXPECT_LT(result.counters.pixels_done, pixels);
