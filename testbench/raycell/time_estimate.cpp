@@ -7,15 +7,16 @@
 namespace raycell {
 namespace {
 
-// What the simulator takes for each of what is foretold, nanoseconds: fitted to 54 runs of the Standard
-// Procedural Databases at 64x64 to 256x256 cells, which they describe to within a factor of 1.7, on one core
-// of a busy server. `scripts/bench --only growth` measures seconds and hops again (docs/performance.md).
+// What the simulator takes for each of what is foretold, nanoseconds, on one core of a server. The terms are
+// those that described 54 runs of the Standard Procedural Databases at 64x64 to 256x256 cells to within a
+// factor of 1.7; those of rays were then fitted to teapot-s4 at these sizes again, when hops had become
+// cheaper. `scripts/bench --only growth` measures seconds and hops (docs/performance.md).
 constexpr double load_hop = 150;
 constexpr double load_step = 170;
 constexpr double load_cell = 2000;
-constexpr double ray_hop = 310;       ///< with one voxel to be looked at, where the array is in the caches
-constexpr double ray_voxel = 16;      ///< for every voxel of a mean cell
-constexpr double ray_doubling = 115;  ///< for every doubling of the array above ...
+constexpr double ray_hop = 260;       ///< with one voxel to be looked at, where the array is in the caches
+constexpr double ray_voxel = 10;      ///< for every voxel of a mean cell
+constexpr double ray_doubling = 40;   ///< for every doubling of the array above ...
 constexpr double small_array = 4096;  ///< ... so many cells
 constexpr double modules = 2.5;       ///< so many times where every cell is a module
 
