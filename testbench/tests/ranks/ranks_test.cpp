@@ -15,19 +15,8 @@ namespace {
 
 constexpr const char* mpirun = "/usr/bin/mpirun";
 
-/// Whether mpirun is there and can start two processes that do nothing: some containers don't let it.
-bool mpirun_works() {
-    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-    static const bool works =
-        fs::exists(mpirun) &&
-        Workshop().run_program(mpirun, {"-q", "--oversubscribe", "-np", "2", "/bin/true"}).exit_code == 0;
-    return works;
-}
-
 #define SKIP_WITHOUT_MPIRUN() \
-    if (!mpirun_works())      \
-    GTEST_SKIP() << mpirun << " is missing or starts nothing: several ranks can't be tried"
+    if (!fs::exists(mpirun)) GTEST_SKIP() << mpirun << " is missing: several ranks can't be tried"
 #define SKIP_WITHOUT_MPI() \
     SKIP_WITHOUT_MPIRUN(); \
     if (!RAYCELL_HAS_MPI) GTEST_SKIP() << "the program is built without MPI"
@@ -35,6 +24,8 @@ bool mpirun_works() {
 /// The words of mpirun for `ranks` processes of raycell; it refuses to be root's, and more ranks than cores,
 /// unless it is told.
 Words by_ranks(int ranks, const Words& words) {
+    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
     return joined({"-q", "--oversubscribe", "-np", std::to_string(ranks), RAYCELL_PROGRAM}, words);
 }
 

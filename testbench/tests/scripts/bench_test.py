@@ -6,6 +6,8 @@ import shutil
 import subprocess
 import sys
 
+from expectation import expect
+
 # In place of the program: notes each run; from run LIMIT on it fails.
 PROGRAM = """#!/bin/bash
 echo "$*" >> '{folder}/calls'
@@ -18,11 +20,6 @@ exec '{program}' "$@"
 QUICK = ["--only", "growth", "--growth-side", "8", "--depths", "16,1024", "--max-depths", "0,4", "--precast-side", "8"]
 SIDES = [8, 64, 80]
 RUNS = 4 + 2 + 2  # arrays, the smallest with precast, too; then depth and max-depth, with precast
-
-
-def expect(condition, text):
-    if not condition:
-        sys.exit(f"expected: {text}")
 
 
 class Test:

@@ -10,6 +10,8 @@ import subprocess
 import sys
 import time
 
+from expectation import expect
+
 # In place of the program: notes each run; while FOLDER/broken is there, those it names fail; waits for SECONDS.
 PROGRAM = """#!/bin/bash
 echo "$*" >> '{folder}/calls'
@@ -36,11 +38,6 @@ cat '{folder}/state'${!#}
 """
 RUNS = 12  # of time_outs --quick
 SHARED = "default.16x16.shared.M8.none.seed2", "branching.16x16.shared.M8.none.seed2"
-
-
-def expect(condition, text):
-    if not condition:
-        sys.exit(f"expected: {text}")
 
 
 class Test:
