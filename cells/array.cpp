@@ -29,6 +29,8 @@ Array::Array(sc_core::sc_module_name name, Environment& environment, const Granu
     for (int y = share.first; y < share.end; ++y) {
         for (int x = 0; x < width; ++x) cells_.emplace_back(environment, x, y);
     }
+    const auto column = std::ptrdiff_t(sizeof(Cell));
+    environment.neighbours = {column, column * width, -column, -column * width};
     make_hosts(granularity);
     make_links();
 }

@@ -150,9 +150,10 @@ void Cell::start_traversal(Cycle now) {
     const std::size_t slots = slot_places();
     std::uint32_t inputs = occupied() & ~decided_;
     if (inputs == 0 && slots == 0) return;
-    // Places of slots come last, so the round is: inputs from next_test_ on, slots, inputs before it.
+    // Places of slots come last, so the round is: inputs from next_test_ on, slots, inputs before it. How many
+    // they are is another line of memory.
     const std::size_t first_slot = ray_input_count_ + std::size_t(1);
-    const std::size_t start = next_test_ < place_count() ? next_test_ : 0;
+    const std::size_t start = next_test_ < first_slot || next_test_ < place_count() ? next_test_ : 0;
     const std::uint32_t before = start < first_slot ? inputs & ((1U << start) - 1) : inputs;
     for (inputs &= ~before; inputs; inputs &= inputs - 1) {
         if (test_at(std::size_t(__builtin_ctz(inputs)), now)) return;

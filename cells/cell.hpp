@@ -237,6 +237,11 @@ class alignas(64) Cell final : public Client {
         std::uint8_t index = 0;
     };
     static constexpr std::uint8_t no_way = 255;
+    /// Asks for the line that a message over a link touches in the cell at its other end. Nobody reads what is
+    /// beyond the border: a hint may name any address.
+    void fetch_neighbour(std::size_t side) const {
+        __builtin_prefetch(reinterpret_cast<const char*>(this) + env_.neighbours[side], 1);
+    }
 
     /// Cycles that a message which waits to move is passed over by others; after that it goes before all of
     /// them, oldest first. Without it a stream of notices can starve what would end it (deadlock.md, step 5).

@@ -29,6 +29,7 @@ void Cell::fetch_links() const {
         const Way& way = ways_[std::size_t(__builtin_ctz(rays))];
         if (way.side == no_way || !out_[way.side]) continue;
         out_[way.side]->fetch(env_.buffer_places[way.side][way.index]);
+        fetch_neighbour(way.side);
     }
 }
 
@@ -43,6 +44,10 @@ void Cell::fetch_messages() const {
         if (parked_ >> place & 1) continue;
         const RayPacket* packet = packet_at(place);
         if (!packet) continue;
+        // Who waits for the room that it leaves behind is woken.
+        const RayInput& input = ray_inputs_[place];
+        const auto side = std::size_t(input.side);
+        if (in_[side]->sender_waits(input.index)) fetch_neighbour(side);
         fetch_object(packet, sizeof(RayPacket));
         if (traversal_.packet || decided_ >> place & 1) continue;
         // It will be tested: the depths of the first voxels, which it is compared with.
@@ -51,8 +56,11 @@ void Cell::fetch_messages() const {
         for (std::size_t i = 0; i < voxels; ++i) __builtin_prefetch(&store_.voxels[i].near);
     }
     for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
-        const Message* head = in_[std::size_t(__builtin_ctz(sides))]->head(env_.classes.answer);
-        if (head && head->kind == Message::Kind::answer) fetch_object(head->answer, sizeof(Answer));
+        const auto side = std::size_t(__builtin_ctz(sides));
+        const Message* head = in_[side]->head(env_.classes.answer);
+        if (!head || head->kind != Message::Kind::answer) continue;
+        fetch_object(head->answer, sizeof(Answer));
+        if (in_[side]->sender_waits(env_.classes.answer)) fetch_neighbour(side);
     }
 }
 
@@ -63,6 +71,7 @@ void Cell::fetch_ways() const {
         if (!head || head->kind != Message::Kind::answer || local(*head->answer)) continue;
         const auto side = std::size_t(route(*head->answer));
         out_[side]->fetch(env_.buffer_places[side][std::size_t(env_.classes.answer)]);
+        fetch_neighbour(side);
         __builtin_prefetch(&env_.pixel_hops[std::size_t(head->answer->id >> 32)], 1);
     }
 }

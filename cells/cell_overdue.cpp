@@ -7,16 +7,18 @@
 namespace raycell {
 
 /// Moves what had waited for more than `patience` cycles when the epoch began, oldest first, whatever it is;
-/// the usual order follows for the others. Looks for it once an epoch, and in every step while there is any:
+/// the usual order follows for the others. Looks for it when an epoch begins in which there may be any, and in every step while there is:
 /// so it does not matter how often the cell runs.
 void Cell::move_overdue(Cycle now) {
     const Cycle began = now / epoch * epoch;
     enum Kind { answer, reply, ray };
     std::vector<std::tuple<Cycle, Kind, std::size_t>> overdue;
     overdue_parked_ = false;
+    Cycle oldest = now;  // of what is not overdue; what comes later, or from behind it in a buffer, is younger
     const auto add = [&](Cycle since, Kind kind, std::size_t index, bool parked) {
-        if (since >= began || began - since <= patience) return;
-        if (parked) {
+        if (since >= began || began - since <= patience) {
+            oldest = std::min(oldest, since);
+        } else if (parked) {
             overdue_parked_ = true;  // looked at again when it may move
         } else {
             overdue.emplace_back(since, kind, index);
@@ -41,7 +43,8 @@ void Cell::move_overdue(Cycle now) {
             add(packet->decided, ray, place, parked_ & bit_of(place));
         }
     }
-    look_for_overdue_ = overdue.empty() ? began + epoch : now + 1;
+    // Otherwise not before the epoch in which the oldest can be overdue.
+    look_for_overdue_ = overdue.empty() ? ((oldest + patience) / epoch + 1) * epoch : now + 1;
     std::sort(overdue.begin(), overdue.end());
     for (const auto& [since, kind, at] : overdue) {
         if (kind == answer) {

@@ -22,11 +22,15 @@ CellTile::CellTile(sc_core::sc_module_name name, Environment& environment)
 void CellTile::run() {
     Scheduler& scheduler = environment_.scheduler;
     const Cycle now = scheduler.now();
-    for (std::size_t i = 0; i < active_.size(); ++i) {
-        if (i + cells_ahead < active_.size()) active_[i + cells_ahead]->fetch();
-        if (i + links_ahead < active_.size()) active_[i + links_ahead]->fetch_links();
-        if (i + messages_ahead < active_.size()) active_[i + messages_ahead]->fetch_messages();
-        if (i + ways_ahead < active_.size()) active_[i + ways_ahead]->fetch_ways();
+    const std::size_t count = active_.size();
+    // The first ones are asked for before anything runs. Beyond the last there is none, so below zero, which
+    // wraps, there is none either.
+    for (std::size_t i = 0 - cells_ahead; i != count; ++i) {
+        if (i + cells_ahead < count) active_[i + cells_ahead]->fetch();
+        if (i + links_ahead < count) active_[i + links_ahead]->fetch_links();
+        if (i + messages_ahead < count) active_[i + messages_ahead]->fetch_messages();
+        if (i + ways_ahead < count) active_[i + ways_ahead]->fetch_ways();
+        if (i >= count) continue;
         const Cycle next = active_[i]->step(now);
         if (next != never) scheduler.wake(*active_[i], next);
     }

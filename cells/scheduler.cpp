@@ -84,7 +84,7 @@ void Scheduler::tick() {
         running_.insert(running_.end(), far->second.begin(), far->second.end());
         far_.erase(far);
     }
-    constexpr std::size_t ahead = 8;  // a client that has not run for a while is in no cache
+    constexpr std::size_t ahead = 16;  // a client that has not run for a while is in no cache
     for (std::size_t i = 0; i < running_.size(); ++i) {
         if (i + ahead < running_.size()) __builtin_prefetch(running_[i + ahead], 1);
         Client* client = running_[i];
