@@ -168,7 +168,21 @@ void Array::end_of_elaboration() {
     }
 }
 
+/// Once loading is over: the depths of all cells' voxels side by side.
+void Array::make_runs() {
+    std::size_t count = 0;
+    for (const Cell& cell : cells_) count += cell.store().voxels.size();
+    if (count == 0 || runs_.size() > 0) return;
+    runs_.reserve(count);
+    for (Cell& cell : cells_) {
+        const DepthRun* first = runs_.begin() + runs_.size();
+        for (const Voxel& voxel : cell.store().voxels) runs_.emplace_back(DepthRun{voxel.near, voxel.far});
+        cell.set_runs(first);
+    }
+}
+
 void Array::begin_phase() {
+    if (environment_.phase != Phase::load) make_runs();
     const Cycle next = environment_.scheduler.now() + 1;
     for (Cell& cell : cells_) {
         cell.begin_phase();

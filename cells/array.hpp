@@ -87,12 +87,14 @@ class Array : public sc_core::sc_module {
     void bind_in(int x, int y, Side side, Link& link);
     void bind_out(int x, int y, Side side, Link& link);
     void end_of_elaboration() override;
+    void make_runs();
 
     Environment& environment_;
     StableArray<Cell> cells_;
     std::vector<std::unique_ptr<CellTile>> tiles_;
     std::map<std::size_t, std::unique_ptr<CellModule>> modules_;  ///< by the cell's index
     StableArray<Link> links_;
+    StableArray<DepthRun> runs_;  ///< of all cells' voxels, row by row
     std::vector<std::uint32_t> ways_;  ///< by link: index of its sink · 4 + side of its source
 };
 

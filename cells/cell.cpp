@@ -10,6 +10,14 @@ Cell::Cell(Environment& environment, int x, int y)
     : env_(environment),
       x_(std::uint16_t(x)),
       y_(std::uint16_t(y)),
+      look_to_shade_(false),
+      replies_first_(false),
+      answer_moved_(false),
+      moved_(false),
+      blocked_(false),
+      root_waits_(false),
+      root_to_send_(false),
+      overdue_parked_(false),
       ray_store_(environment.machine.ray_store, waiting_generations(environment.context),
                  environment.machine.slots) {}
 
@@ -25,9 +33,10 @@ void Cell::elaborate() {
             // What comes in at one side runs towards the other.
             if (!answers_only && env_.classes.used(index, horizontal, opposite(Side(side)))) {
                 bits |= 1U << ray_input_count_;
-                ray_inputs_[ray_input_count_++] = {Side(side), std::uint8_t(index)};
+                ray_inputs_[ray_input_count_++] = RayInput(Side(side), index, in->place(index));
             }
             if (bits) in->watch(index, bits);
+            if (index == env_.classes.answer) answer_places_[std::size_t(side)] = in->place(index);
         }
     }
     if (!load_in_) load_in_ = in_[std::size_t(Side::west)];
@@ -77,8 +86,8 @@ Cycle Cell::step(Cycle now) {
 
 void Cell::unpark(Cycle now) {
     for (; room_made_; room_made_ &= room_made_ - 1) {
-        std::uint32_t& bits = parked_on_[std::size_t(__builtin_ctz(room_made_))];
-        parked_ &= ~bits;
+        std::uint16_t& bits = parked_on_[std::size_t(__builtin_ctz(room_made_))];
+        parked_ &= ~std::uint32_t(bits);
         bits = 0;
     }
     if (overdue_parked_) look_for_overdue_ = std::min(look_for_overdue_, now);
@@ -99,7 +108,8 @@ void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_
 RayPacket* Cell::packet_at(std::size_t place) const {
     if (place < ray_input_count_) {
         const RayInput& input = ray_inputs_[place];
-        const Message* message = link_of(place).head(input.index);
+        const Message* message =
+            in_[std::size_t(input.side)]->head_at(input.place, env_.scheduler.now());
         return message && message->kind == Message::Kind::ray ? message->ray : nullptr;
     }
     if (place == ray_input_count_) return own_;
@@ -111,9 +121,10 @@ void Cell::remove_from(std::size_t place) {
     decided_ &= ~bit_of(place);
     if (place < ray_input_count_) {
         const RayInput& input = ray_inputs_[place];
-        Link& link = link_of(place);
-        link.pop(input.index);
-        if (link.occupancy(input.index) > 0) want(env_.scheduler.now() + 1);
+        Link& link = *in_[std::size_t(input.side)];
+        const Cycle now = env_.scheduler.now();
+        pending_ &= ~link.pop_at(input.place, now);
+        if (link.occupancy_at(input.place) > 0) want(now + 1);
         return;
     }
     if (place == ray_input_count_) {
@@ -174,7 +185,7 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     if (!packet || packet->stage != RayPacket::Stage::untested) return false;
     settle(wait_of(*packet, place), packet->ray.id, now);
     packet->wait.cause = Stall::none;
-    packet->visit = visit_cell(store_, packet->ray, env_.context);
+    packet->visit = visit_cell(store_, packet->ray, env_.context, runs_, run_count_);
     packet->stage = RayPacket::Stage::in_test;
     const std::uint32_t cycles =
         unit_cycles(packet->ray.outside ? env_.costs().walk_step
@@ -185,8 +196,8 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     next_test_ = std::uint32_t(place + 1);
     if (place <= ray_input_count_) {
         const bool goes_on = packet->visit.event == Visit::Event::forward;
-        ways_[place] = {goes_on ? std::uint8_t(packet->visit.crossing.side) : no_way,
-                        std::uint8_t(env_.classes.ray(packet->ray))};
+        ways_[place] =
+            Way(goes_on ? int(packet->visit.crossing.side) : no_way, env_.classes.ray(packet->ray));
     }
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
            std::uint32_t(packet->visit.event));
@@ -234,20 +245,20 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
 }
 
 void Cell::move_answers(Cycle now) {
-    const int index = env_.classes.answer;
     std::array<int, side_count> order;  // sides with an answer, oldest first
     int count = 0;
     for (std::uint32_t sides = answers_to_move() & ~std::uint32_t(answers_moved_); sides;
          sides &= sides - 1) {
         const int side = __builtin_ctz(sides);
-        Link* in = in_[std::size_t(side)];
-        const Message* head = in->head(index);
+        const Link* in = in_[std::size_t(side)];
+        const std::uint8_t at = answer_places_[std::size_t(side)];
+        const Message* head = in->head_at(at, now);
         if (!head || head->kind != Message::Kind::answer) continue;
         int place = count++;
         for (; place > 0; --place) {
-            const int before = order[std::size_t(place - 1)];
-            if (in_[std::size_t(before)]->arrival(index) <= in->arrival(index)) break;
-            order[std::size_t(place)] = before;
+            const auto before = std::size_t(order[std::size_t(place - 1)]);
+            if (in_[before]->arrival_at(answer_places_[before]) <= in->arrival_at(at)) break;
+            order[std::size_t(place)] = int(before);
         }
         order[std::size_t(place)] = side;
     }
@@ -261,8 +272,9 @@ void Cell::move_answer(std::size_t from, Cycle now) {
     Link& in = *in_[from];
     Wait& wait = answer_waits_[from];
     const int index = env_.classes.answer;
-    const Message message = *in.head(index);
-    const Cycle ready = in.arrival(index) + env_.costs().route_return;
+    const std::uint8_t place = answer_places_[from];
+    const Message message = *in.head_at(place, now);
+    const Cycle ready = in.arrival_at(place) + env_.costs().route_return;
     if (now < ready) {
         want(ready);
         return;
@@ -299,8 +311,8 @@ void Cell::move_answer(std::size_t from, Cycle now) {
     answer_moved_ = true;
     settle(wait, id, now);
     wait.cause = Stall::none;
-    in.pop(index);
-    if (in.occupancy(index) > 0) want(now + 1);
+    pending_ &= ~in.pop_at(place, now);
+    if (in.occupancy_at(place) > 0) want(now + 1);
 }
 
 void Cell::move_rays(Cycle now) {
@@ -373,7 +385,7 @@ bool Cell::finish_ray(RayPacket& packet, std::size_t place, Cycle now) {
                 env_.counters.rays.lost += ended;
                 return ended;
             }
-            start_outside(packet.ray, packet.visit.t_leave, env_.context.arithmetic);
+            start_outside(packet.ray, packet.visit.hit.t, env_.context.arithmetic);
             packet.stage = RayPacket::Stage::untested;
             packet.wait = {now, Stall::traversal};
             decided_ &= ~bit_of(place);

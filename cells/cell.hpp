@@ -49,6 +49,12 @@ class alignas(64) Cell final : public Client {
     /// One cycle. Returns the next cycle in which the cell wants to run of itself, `never` if none.
     Cycle step(Cycle now);
 
+    /// The depths of the store's voxels, which must not change any more: kept by the caller.
+    void set_runs(const DepthRun* runs) {
+        runs_ = runs;
+        run_count_ = std::uint32_t(store_.voxels.size());
+    }
+
     const CellStore& store() const { return store_; }
     CellStore& store() { return store_; }
     const RayStore& ray_store() const { return ray_store_; }
@@ -96,9 +102,13 @@ class alignas(64) Cell final : public Client {
 
   private:
     struct RayInput {
-        Side side;
-        std::uint8_t index;
+        Side side : 2;
+        std::uint8_t index : 3;  ///< class
+        std::uint8_t place : 3;  ///< of its buffer in the link
+        RayInput(Side from = Side::east, int buffer_class = 0, int at = 0)
+            : side(from), index(std::uint8_t(buffer_class & 7)), place(std::uint8_t(at & 7)) {}
     };
+    static_assert(sizeof(RayInput) == 1 && Link::most_classes < 8);
     static constexpr std::size_t most_ray_inputs = 8;
     struct Traversal {
         RayPacket* packet = nullptr;
@@ -110,7 +120,10 @@ class alignas(64) Cell final : public Client {
         Job job = Job::idle;
         std::uint32_t slot = 0;
         Cycle done = 0;
-        RayPacket* packet = nullptr;  ///< direct: a hit that waits for nothing needs no slot
+    };
+    /// A hit that waits for nothing needs no slot.
+    struct DirectHit {
+        RayPacket* packet = nullptr;
         dvec3 result{0, 0, 0};
     };
 
@@ -168,7 +181,7 @@ class alignas(64) Cell final : public Client {
         // Nobody notes down that a ray has come to the head of its buffer: the link knows.
         const bool arrived = packet.stage == RayPacket::Stage::untested && packet.wait.cause == Stall::none;
         if (!arrived || place >= ray_input_count_) return packet.wait;
-        return {link_of(place).head_since(ray_inputs_[place].index), Stall::traversal};
+        return {link_of(place).head_since_at(ray_inputs_[place].place), Stall::traversal};
     }
     /// An attempt to move failed because of `cause`.
     void stall(Wait& wait, Stall cause, std::uint64_t ray, Cycle now) {
@@ -227,18 +240,21 @@ class alignas(64) Cell final : public Client {
     /// What waits for room behind this side's output is not tried again before the link says that there is.
     void park(std::uint32_t bits, std::size_t side) {
         parked_ |= bits;
-        parked_on_[side] |= bits;
+        parked_on_[side] |= std::uint16_t(bits);
     }
     void unpark(Cycle now);
     std::uint32_t bit_in_test() const { return traversal_.packet ? bit_of(traversal_.place) : 0; }
     /// The output that a decided ray at this place wants, for fetch_ways(): side and class.
+    static constexpr int no_way = 15;
     struct Way {
-        std::uint8_t side = no_way;
-        std::uint8_t index = 0;
+        std::uint8_t side : 4;
+        std::uint8_t index : 4;
+        Way(int to = no_way, int buffer_class = 0)
+            : side(std::uint8_t(to & 15)), index(std::uint8_t(buffer_class & 15)) {}
     };
-    static constexpr std::uint8_t no_way = 255;
     /// Asks for the line that a message over a link touches in the cell at its other end. Nobody reads what is
     /// beyond the border: a hint may name any address.
+    void fetch_sender(std::size_t side, std::uint8_t place) const;
     void fetch_neighbour(std::size_t side) const {
         __builtin_prefetch(reinterpret_cast<const char*>(this) + env_.neighbours[side], 1);
     }
@@ -247,12 +263,12 @@ class alignas(64) Cell final : public Client {
     /// them, oldest first. Without it a stream of notices can starve what would end it (deadlock.md, step 5).
     static constexpr Cycle patience = 65536;
     static constexpr Cycle epoch = patience / 8;  ///< ages are counted in these
-    static constexpr unsigned answer_bits = 16;
+    static constexpr unsigned answer_bits = 12;
 
     // By cache lines: what every step looks at comes first, `hot_lines` of it; what few cells or reports
     // need, last. Words of bits have a bit per place: ray inputs from 0, the own ray after them, answers by
     // side from `answer_bits`.
-    static constexpr std::size_t hot_lines = 5;
+    static constexpr std::size_t hot_lines = 6;
     Environment& env_;
     CellHost* host_ = nullptr;
     Cycle next_ = never;
@@ -260,7 +276,8 @@ class alignas(64) Cell final : public Client {
     std::uint16_t y_;
     // pending_: buffers that hold anything, arrived or on the wires. room_made_: a bit per output behind
     // which room was made since somebody parked on it. Both are the client's.
-    std::uint32_t decided_ = 0;    ///< rays whose test is over
+    std::uint32_t decided_ = 0;  ///< rays whose test is over
+
     std::uint32_t parked_ = 0;     ///< rays and answers that wait for room behind an output
     std::uint32_t next_test_ = 0;  ///< round robin over places
     Traversal traversal_;
@@ -272,30 +289,39 @@ class alignas(64) Cell final : public Client {
     std::uint8_t own_attempts_ = 0;
     std::uint8_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
     Stall cause_ = Stall::none;       ///< why the last attempt to move something failed
-    bool look_to_shade_ = false;      ///< a slot may have work for the shading unit
-    bool replies_first_ = false;      ///< replies go before answers that came in, which went last
-    bool answer_moved_ = false;       ///< this cycle: an answer left an input
-    bool moved_ = false;              ///< this cycle: something went on, or came home
-    bool blocked_ = false;            ///< this cycle: something wanted to and could not
-    bool root_waits_ = false;         ///< the pixel's intensity is still to come
-    bool root_to_send_ = false;
-    bool overdue_parked_ = false;  ///< there were overdue messages, all of which are parked
-    Cycle store_port_ = never;     ///< cycle in which the ray store's one write port was used
+    bool look_to_shade_ : 1;          ///< a slot may have work for the shading unit
+    bool replies_first_ : 1;          ///< replies go before answers that came in, which went last
+    bool answer_moved_ : 1;           ///< this cycle: an answer left an input
+    bool moved_ : 1;                  ///< this cycle: something went on, or came home
+    bool blocked_ : 1;                ///< this cycle: something wanted to and could not
+    bool root_waits_ : 1;             ///< the pixel's intensity is still to come
+    bool root_to_send_ : 1;
+    bool overdue_parked_ : 1;  ///< there were overdue messages, all of which are parked
+    std::uint32_t run_count_ = 0;
+
+    const DepthRun* runs_ = nullptr;  ///< of the voxels, once they are all there
+    std::uint64_t hash_ = 0;
+    Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
     Cycle look_for_overdue_ =
         patience;  ///< cycle from which on to look for messages that waited for too long
-    std::uint64_t hash_ = 0;
     TimeOut time_out_;
-    std::array<std::uint32_t, side_count> parked_on_{};  ///< parked, by output; some may have left since
+    std::array<std::uint16_t, side_count> parked_on_{};  ///< parked, by output; some may have left since
+    std::array<RayInput, most_ray_inputs> ray_inputs_{};
+
     std::array<Link*, side_count> in_{};
     std::array<Link*, side_count> out_{};
-    std::array<RayInput, most_ray_inputs> ray_inputs_{};
-    std::array<Way, most_ray_inputs + 1> ways_{};  ///< by place, of inputs and the own ray
+
+    std::array<Wait, side_count> answer_waits_{};          ///< of the oldest answer at each side
+    std::array<std::uint8_t, side_count> answer_places_{};  ///< of their buffers in the links
+    std::array<Way, most_ray_inputs + 1> ways_;            ///< by place, of inputs and the own ray
     Shading shading_;
-    CellStatistics statistics_;
+
+    CellStatistics statistics_;  // its first line is the last hot one
+
+    DirectHit direct_;
+    Wait direct_wait_;  ///< of the answer that stands in the shading unit
     CellStore store_;
     RayStore ray_store_;
-    std::array<Wait, side_count> answer_waits_{};  ///< of the oldest answer at each side
-    Wait direct_wait_;                             ///< of the answer that stands in the shading unit
     Cycle own_at_ = 0;
     std::uint64_t operations_ = 0;      ///< of the units, for their random stalls
     std::uint64_t precast_next_ = 0;    ///< voxel · sources + source

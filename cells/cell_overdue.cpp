@@ -29,8 +29,10 @@ void Cell::move_overdue(Cycle now) {
         if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
         const bool parked = parked_ >> (answer_bits + unsigned(side)) & 1;
         const Link* in = in_[std::size_t(side)];
-        if (in->front(index).kind != Message::Kind::answer) continue;
-        add(in->arrival(index) + env_.costs().route_return, answer, std::size_t(side), parked);
+        const std::uint8_t place = answer_places_[std::size_t(side)];
+        const Message* head = in->head_at(place, now);
+        if (!head || head->kind != Message::Kind::answer) continue;
+        add(in->arrival_at(place) + env_.costs().route_return, answer, std::size_t(side), parked);
     }
     if (shading_.job == Shading::Job::direct_answer) add(shading_.done, reply, 0, false);
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {

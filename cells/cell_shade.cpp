@@ -235,7 +235,7 @@ void Cell::begin_shade(std::uint32_t index, Cycle now) {
     slot.wait.cause = Stall::none;
     const std::uint32_t cycles =
         unit_cycles(shade_cycles(env_.context, slot.lit & slot.setup.facing, env_.costs()));
-    shading_ = {Shading::Job::shade, index, now + cycles, nullptr, dvec3(0)};
+    shading_ = {Shading::Job::shade, index, now + cycles};
     env_.counters.shading_cycles += cycles;
     statistics_.shading_cycles += cycles;
     want(shading_.done);
@@ -253,7 +253,7 @@ void Cell::begin_set_up(std::uint32_t index, Cycle now) {
     settle(slot.wait, packet.ray.id, now);
     slot.wait.cause = Stall::none;
     const std::uint32_t cycles = unit_cycles(setup_cycles(env_.context, slot.setup, env_.costs()));
-    shading_ = {Shading::Job::set_up, index, now + cycles, nullptr, dvec3(0)};
+    shading_ = {Shading::Job::set_up, index, now + cycles};
     env_.counters.shading_cycles += cycles;
     statistics_.shading_cycles += cycles;
     want(shading_.done);
@@ -270,8 +270,8 @@ void Cell::begin_direct(RayPacket& packet, Cycle now) {
     const std::uint64_t lit = env_.context.settings.shadows == Shadows::per_hit ? 0 : store_.lit[hit.voxel];
     const std::uint32_t cycles = unit_cycles(setup_cycles(env_.context, setup, env_.costs()) +
                                              shade_cycles(env_.context, lit & setup.facing, env_.costs()));
-    shading_ = {Shading::Job::direct, 0, now + cycles, &packet,
-                shade_hit(env_.context, setup, voxel.object, lit, dvec3(0), dvec3(0))};
+    shading_ = {Shading::Job::direct, 0, now + cycles};
+    direct_ = {&packet, shade_hit(env_.context, setup, voxel.object, lit, dvec3(0), dvec3(0))};
     env_.counters.shading_cycles += cycles;
     statistics_.shading_cycles += cycles;
     want(shading_.done);
@@ -311,9 +311,9 @@ void Cell::move_replies(Cycle now) {
     bool waits = false;
     bool went = false;
     if (shading_.job == Shading::Job::direct_answer) {
-        Answer answer = answer_to(shading_.packet->ray, Answer::Kind::intensity);
-        answer.colour = shading_.result;
-        RayPacket* packet = shading_.packet;
+        Answer answer = answer_to(direct_.packet->ray, Answer::Kind::intensity);
+        answer.colour = direct_.result;
+        RayPacket* packet = direct_.packet;
         if (send_answer(answer, now)) {
             settle(direct_wait_, answer.id, now);
             direct_wait_.cause = Stall::none;

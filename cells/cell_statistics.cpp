@@ -5,7 +5,7 @@ namespace raycell {
 
 void Cell::add_stall(const Wait& wait, std::uint64_t ray, Cycle now) {
     const Cycle cycles = now - wait.since;
-    statistics_.stalls[std::size_t(wait.cause)] += cycles;
+    statistics_.stalls[wait.cause] += cycles;
     if (env_.observer) env_.observer->stalled(*this, now, ray, wait.cause, cycles);
 }
 
@@ -14,7 +14,7 @@ CellStatistics Cell::statistics(Cycle now) const {
     sum.slot_cycles += ray_store_.waiting_cycles(now);
     const auto add = [&](const Wait& wait) {
         if (wait.cause != Stall::none && now > wait.since)
-            sum.stalls[std::size_t(wait.cause)] += now - wait.since;
+            sum.stalls[wait.cause] += now - wait.since;
     };
     for (std::size_t place = 0; place < place_count(); ++place) {
         if (nothing_at(place)) continue;

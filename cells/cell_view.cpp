@@ -100,9 +100,9 @@ UnitView Cell::shading_unit() const {
                     shading_.job == Shading::Job::shade ? Operation::shade : Operation::set_up,
                     ray_store_[shading_.slot].packet->ray.id};
         case Shading::Job::direct:
-            return {UnitView::State::busy, Operation::direct, shading_.packet->ray.id};
+            return {UnitView::State::busy, Operation::direct, direct_.packet->ray.id};
         case Shading::Job::direct_answer:
-            return {UnitView::State::blocked, Operation::direct, shading_.packet->ray.id};
+            return {UnitView::State::blocked, Operation::direct, direct_.packet->ray.id};
     }
     return {};
 }

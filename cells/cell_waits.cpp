@@ -42,9 +42,9 @@ void Cell::add_places(WaitMap& map) const {
         map.place(own_->ray,
                   map.add(this, 0, node(Kind::own, "own ray", describe(own_->ray), own_->decided)));
     if (shading_.job == Shading::Job::direct || shading_.job == Shading::Job::direct_answer) {
-        map.place(shading_.packet->ray, map.add(this, 0,
+        map.place(direct_.packet->ray, map.add(this, 0,
                                                 node(Kind::shading, "shading unit",
-                                                     describe(shading_.packet->ray), shading_.done)));
+                                                     describe(direct_.packet->ray), shading_.done)));
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];
@@ -220,7 +220,7 @@ void Cell::add_waits(WaitMap& map) const {
     if (const auto node = map.find(this, Kind::own, 0)) map.set(*node, wants_ray(map, *own_));
     if (const auto node = map.find(this, Kind::shading, 0)) {
         map.set(*node, shading_.job == Shading::Job::direct_answer
-                           ? wants_answer_way(map, answer_to(shading_.packet->ray, Answer::Kind::intensity))
+                           ? wants_answer_way(map, answer_to(direct_.packet->ray, Answer::Kind::intensity))
                            : Wants::nothing("the end of its shading"));
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {

@@ -21,7 +21,10 @@ Link::Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used)
     for (int index = 0; index < classes; ++index) {
         if (used >> index & 1) places_[std::size_t(index)] = buffers++;
     }
-    if (buffers > own_buffers) extras().more_buffers = std::make_unique<Buffer[]>(buffers - own_buffers);
+    if (buffers > own_buffers) {
+        extras().more_buffers = std::make_unique<Buffer[]>(buffers - own_buffers);
+        for (std::size_t i = 0; i < buffers - own_buffers; ++i) extras_->more_buffers[i].watched = true;
+    }
 }
 
 std::size_t Link::bytes(std::uint32_t used) {
@@ -32,7 +35,9 @@ std::size_t Link::bytes(std::uint32_t used) {
 }
 
 Link::Extras& Link::extras() {
-    if (!extras_) extras_ = std::make_unique<Extras>();
+    if (extras_) return *extras_;
+    extras_ = std::make_unique<Extras>();
+    for (Buffer& b : buffers_) b.watched = true;
     return *extras_;
 }
 
@@ -61,9 +66,10 @@ void Link::tell_sent(int index, const Message& message, int cycles) {
     if (extras_->arrivals) extras_->arrivals->arrives(extras_->port, index, wires_free_);
 }
 
-void Link::tell_popped(int index) {
+void Link::tell_popped(std::uint8_t place) {
     if (!extras_->observer) return;
-    extras_->observer->popped(*this, index, buffer(index).at(0).message, scheduler_.now());
+    const int index = int(std::find(places_.begin(), places_.end(), place) - places_.begin());
+    extras_->observer->popped(*this, index, buffer_at(place).at(0).message, scheduler_.now());
 }
 
 Link::Room Link::room(int index) const {
@@ -87,7 +93,8 @@ void Link::Buffer::grow(int depth) {
 void Link::watch(int index, std::uint32_t bits) {
     if (!sink_) throw std::logic_error("a link without a sink is watched");
     Buffer& b = buffer(index);
-    b.pending_bits = bits;
+    if (bits > 0xffffU) throw std::invalid_argument("a link's sink has bits of 0 to 15");
+    b.pending_bits = std::uint16_t(bits);
     if (b.count > 0) sink_->pending_ |= bits;
 }
 

@@ -99,7 +99,27 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     /// Cycle from which on the oldest message has been both arrived and the oldest.
     Cycle head_since(int index) const;
     void pop(int index) override;
-    /// Asks the link to keep `bits` set in its sink's pending_ while the buffer of a class holds anything, on
+
+    /// The same for a sink that knows where a class's buffer stands, and need not touch the link's first line
+    /// for it. Only for classes that the link carries.
+    std::uint8_t place(int index) const { return places_[std::size_t(index)]; }
+    const Message* head_at(std::uint8_t place, Cycle now) const {
+        const Buffer& b = buffer_at(place);
+        if (b.count == 0) return nullptr;
+        const Entry& entry = b.at(0);
+        return entry.visible <= now ? &entry.message : nullptr;
+    }
+    /// Of a buffer that is not empty.
+    Cycle arrival_at(std::uint8_t place) const { return buffer_at(place).at(0).visible; }
+    Cycle head_since_at(std::uint8_t place) const {
+        const Buffer& b = buffer_at(place);
+        return b.last_pop == never ? b.at(0).visible : std::max(b.at(0).visible, b.last_pop);
+    }
+    int occupancy_at(std::uint8_t place) const { return buffer_at(place).count; }
+    bool sender_waits_at(std::uint8_t place) const { return buffer_at(place).sender_waits; }
+    /// Returns what the sink is to take from its pending_: bits if the buffer is empty now.
+    std::uint32_t pop_at(std::uint8_t place, Cycle now);
+    /// Asks the link to keep `bits`, of 0 to 15, set in its sink's pending_ while the buffer of a class holds anything, on
     /// the wires or arrived: so a cell need not look into empty buffers. Throws std::logic_error without a sink.
     void watch(int index, std::uint32_t bits);
     /// Asks the link to set `bits`, of 0 to 15, in its source's room_made_ when a sender that can_send() has
@@ -137,8 +157,12 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     /// takes on trust rather than read.
     void fetch(std::size_t place) const {
         __builtin_prefetch(this, 1);
-        __builtin_prefetch(&buffers_[place], 1);
+        fetch_buffer(place);
     }
+    /// The buffer's alone: all that a sink touches of a link.
+    void fetch_buffer(std::size_t place) const { __builtin_prefetch(&buffers_[place], 1); }
+    /// And what it takes to wake the source.
+    void fetch_source() const { __builtin_prefetch(this); }
     /// The place of a class's buffer in a link that carries the classes `used`.
     static constexpr std::uint8_t place_of(int index, std::uint32_t used) {
         return std::uint8_t(__builtin_popcount(used & ((1U << unsigned(index)) - 1)));
@@ -155,13 +179,14 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         std::uint64_t occupied = 0;  ///< cycles of pops less cycles of sends: needs no note of when
         std::uint32_t sent = 0;
         std::uint32_t busy = 0;  ///< cycles that its messages took on the wires
-        std::uint32_t pending_bits = 0;
+        std::uint16_t pending_bits = 0;
         std::uint16_t capacity = 1;
         std::uint16_t head = 0;
         std::uint16_t count = 0;
         std::uint16_t popped_now = 0;  ///< in cycle last_pop: not yet room for the sender
         std::uint16_t peak = 0;
         bool sender_waits = false;
+        bool watched = false;  ///< the link has extras that are told of every pop
 
         Buffer() : first() {}
         ~Buffer() {
@@ -205,7 +230,8 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     Extras& extras();
     std::uint32_t stalled();
     void tell_sent(int index, const Message& message, int cycles);
-    void tell_popped(int index);
+    void tell_popped(std::uint8_t place);
+    void wake_source(Cycle now);
 
     Scheduler& scheduler_;
     Cycle wires_free_ = 0;
@@ -261,14 +287,12 @@ inline void Link::send(int index, const Message& message, int cycles, int later)
     if (later > 0) scheduler_.sample_at(wires_free_, wires_free_ + Cycle(later));
 }
 
-inline void Link::pop(int index) {
-    Buffer& b = buffer(index);
-    const Cycle now = scheduler_.now();
-    if (extras_) tell_popped(index);
+inline std::uint32_t Link::pop_at(std::uint8_t place, Cycle now) {
+    Buffer& b = buffer_at(place);
+    if (b.watched) tell_popped(place);
     b.occupied += now;
     b.head = std::uint16_t(b.wrapped(1));
     --b.count;
-    if (b.count == 0 && sink_) sink_->pending_ &= ~b.pending_bits;
     if (b.last_pop != now) {
         b.last_pop = now;
         b.popped_now = 0;
@@ -276,10 +300,20 @@ inline void Link::pop(int index) {
     ++b.popped_now;
     if (b.sender_waits) {
         b.sender_waits = false;
-        if (!source_) return;
-        source_->room_made_ |= room_bits_;
-        scheduler_.wake(*source_, now + 1);
+        wake_source(now);
     }
+    return b.count == 0 ? b.pending_bits : 0;
+}
+
+inline void Link::wake_source(Cycle now) {
+    if (!source_) return;
+    source_->room_made_ |= room_bits_;
+    scheduler_.wake(*source_, now + 1);
+}
+
+inline void Link::pop(int index) {
+    const std::uint32_t emptied = pop_at(place(index), scheduler_.now());
+    if (sink_) sink_->pending_ &= ~emptied;
 }
 
 }  // namespace raycell

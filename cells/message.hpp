@@ -20,6 +20,7 @@ struct alignas(64) RayPacket {
     Wait wait;
     std::uint64_t launched = 0;  ///< cycle in which it was put on its way
 };
+static_assert(sizeof(RayPacket) == 3 * 64);  // lines of memory: every hop moves them all
 
 /// A load message: polygons from geometry, trapezes from precomputation and down the column of distributors,
 /// spans in the rows; the others are broadcast.

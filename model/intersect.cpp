@@ -129,16 +129,19 @@ std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, cons
 }
 
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
-                                       double level, const Arithmetic& arithmetic, Comparisons* comparisons) {
+                                       double level, const Arithmetic& arithmetic, Comparisons* comparisons,
+                                       const DepthRun* runs, std::uint32_t run_count) {
     std::optional<CellHit> best;
-    if (comparisons) comparisons->runs += std::uint32_t(store.voxels.size());
-    if (store.voxels.empty()) return best;
+    if (!runs) run_count = std::uint32_t(store.voxels.size());
+    if (comparisons) comparisons->runs += run_count;
+    if (run_count == 0) return best;
     const double z1 = depth_at(ray, t_end, arithmetic);
     const double z_low = std::min(ray.position.z, z1) - arithmetic.hair();
     const double z_high = std::max(ray.position.z, z1) + arithmetic.hair();
-    for (std::uint32_t i = 0; i < store.voxels.size(); ++i) {
+    for (std::uint32_t i = 0; i < run_count; ++i) {
+        if (runs && (runs[i].near > z_high || runs[i].far < z_low)) continue;
         const Voxel& voxel = store.voxels[i];
-        if (voxel.near > z_high || voxel.far < z_low) continue;
+        if (!runs && (voxel.near > z_high || voxel.far < z_low)) continue;
         if (voxel.polygon == ray.leaves) continue;
         if (comparisons) {
             ++comparisons->tests;

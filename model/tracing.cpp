@@ -150,7 +150,8 @@ std::vector<std::string> range_warnings(const Context& context) {
     return warnings;
 }
 
-Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context) {
+Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context, const DepthRun* runs,
+                 std::uint32_t run_count) {
     if (context.traffic) return context.traffic->visit_cell(store, ray, context);
     const Arithmetic& arithmetic = context.arithmetic;
     Visit visit;
@@ -172,14 +173,14 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context)
                                         0.0);
         t_end = std::min(t_leave, t_end);
         visit.event = Visit::Event::leaves_cube;
-        visit.t_leave = t_end;
+        visit.hit.t = t_end;
     }
     if (ray.reach <= t_end) {
         t_end = ray.reach;
         visit.event = Visit::Event::reaches_source;
     }
     const auto hit = nearest_in_cell(store, ray, t_end, context.settings.hit, context.scene.frame.level(),
-                                     arithmetic, &visit.comparisons);
+                                     arithmetic, &visit.comparisons, runs, run_count);
     // What lies on the source itself does not hide it.
     if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach - arithmetic.hair())) {
         visit.event = Visit::Event::hit;

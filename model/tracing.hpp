@@ -44,13 +44,14 @@ struct Visit {
         leaves_cube,    ///< leaves through the front or the back while in this cell
         reaches_source  ///< a shadow ray that nothing blocked
     };
-    Event event = Event::forward;
     Crossing crossing;
-    CellHit hit;
-    double t_leave = 0;  ///< distance to the front or the back (leaves_cube)
+    CellHit hit;  ///< leaves_cube: its distance is that to the front or the back
     Comparisons comparisons;
+    Event event = Event::forward;
 };
-Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context);
+/// `runs`: see nearest_in_cell().
+Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
+                 const DepthRun* runs = nullptr, std::uint32_t run_count = 0);
 
 /// Cycles that the traversal unit needs for a visit.
 std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs);

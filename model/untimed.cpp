@@ -115,7 +115,7 @@ UntimedMachine::Answer UntimedMachine::trace(Ray ray, int x, int y, Pixel* pixel
             case Visit::Event::leaves_cube: {
                 const Face face = face_of_depth(ray);
                 if (beyond_face(context_, face) == Beyond::nothing) return leave(ray, face, {}, at, pixel);
-                start_outside(ray, visit.t_leave, context_.arithmetic);
+                start_outside(ray, visit.hit.t, context_.arithmetic);
                 continue;  // this cell only passes it on now
             }
             case Visit::Event::forward:

@@ -33,6 +33,12 @@ struct Voxel {
     double area = 0;       ///< of the polygon in the cell, while loading: weight of `point` in a merge
 };
 
+/// What a ray is compared with first, of a voxel: apart from the rest, so that a cell's stand side by side.
+struct DepthRun {
+    double near = 0;
+    double far = 0;
+};
+
 /// What one cell holds after loading.
 struct CellStore {
     std::vector<Voxel> voxels;

@@ -103,7 +103,7 @@ std::string cells_csv(Machine& machine, const RunResult& result) {
              << in.rays.mean(cycles) << in.answers.peak << in.answers.mean(cycles) << in.busy_cycles
              << s.traversal_cycles << s.shading_cycles << s.load_hops << s.ray_hops << s.return_hops
              << s.postponed << stalls;
-        for (std::size_t cause = 1; cause <= stall_causes; ++cause) line << s.stalls[cause];
+        for (std::size_t cause = 1; cause <= stall_causes; ++cause) line << s.stalls[Stall(cause)];
     }
     return text;
 }

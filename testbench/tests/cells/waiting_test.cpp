@@ -25,7 +25,7 @@ struct EmptyCell : LoneCell {
     Link& east_out() { return towards(Side::east); }
 };
 
-std::uint64_t cycles_of(const CellStatistics& s, Stall cause) { return s.stalls[std::size_t(cause)]; }
+std::uint64_t cycles_of(const CellStatistics& s, Stall cause) { return s.stalls[cause]; }
 
 std::uint64_t all_cycles(const CellStatistics& s) {
     std::uint64_t sum = 0;
