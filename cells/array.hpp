@@ -94,7 +94,7 @@ class Array : public sc_core::sc_module {
     std::vector<std::unique_ptr<CellTile>> tiles_;
     std::map<std::size_t, std::unique_ptr<CellModule>> modules_;  ///< by the cell's index
     StableArray<Link> links_;
-    StableArray<DepthRun> runs_;  ///< of all cells' voxels, row by row
+    StableArray<DepthRun> runs_;       ///< of all cells' voxels, row by row
     std::vector<std::uint32_t> ways_;  ///< by link: index of its sink · 4 + side of its source
 };
 

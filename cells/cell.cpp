@@ -17,7 +17,6 @@ Cell::Cell(Environment& environment, int x, int y)
       blocked_(false),
       root_waits_(false),
       root_to_send_(false),
-      overdue_parked_(false),
       ray_store_(environment.machine.ray_store, waiting_generations(environment.context),
                  environment.machine.slots) {}
 
@@ -80,17 +79,19 @@ Cycle Cell::step(Cycle now) {
     move_rays(now);
     if (!traversal_.packet) start_traversal(now);
     if (look_to_shade_ && shading_.job == Shading::Job::idle) start_shading(now);
-    time_out_.step(moved_, blocked_ || parked_, now);
+    time_out_.step(moved_, blocked_ || parked_, now, env_.wait_counts);
     return next_;
 }
 
 void Cell::unpark(Cycle now) {
+    std::uint32_t unparked = 0;
     for (; room_made_; room_made_ &= room_made_ - 1) {
         std::uint16_t& bits = parked_on_[std::size_t(__builtin_ctz(room_made_))];
-        parked_ &= ~std::uint32_t(bits);
+        unparked |= bits;
         bits = 0;
     }
-    if (overdue_parked_) look_for_overdue_ = std::min(look_for_overdue_, now);
+    parked_ &= ~unparked;
+    if (overdue_parked_ & (unparked | any_bit)) look_for_overdue_ = std::min(look_for_overdue_, now);
 }
 
 void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail) {
@@ -108,8 +109,7 @@ void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_
 RayPacket* Cell::packet_at(std::size_t place) const {
     if (place < ray_input_count_) {
         const RayInput& input = ray_inputs_[place];
-        const Message* message =
-            in_[std::size_t(input.side)]->head_at(input.place, env_.scheduler.now());
+        const Message* message = in_[std::size_t(input.side)]->head_at(input.place, env_.scheduler.now());
         return message && message->kind == Message::Kind::ray ? message->ray : nullptr;
     }
     if (place == ray_input_count_) return own_;
@@ -161,8 +161,8 @@ void Cell::start_traversal(Cycle now) {
     const std::size_t slots = slot_places();
     std::uint32_t inputs = occupied() & ~decided_;
     if (inputs == 0 && slots == 0) return;
-    // Places of slots come last, so the round is: inputs from next_test_ on, slots, inputs before it. How many
-    // they are is another line of memory.
+    // Places of slots come last, so the round is: inputs from next_test_ on, slots, inputs before it. How
+    // many they are is another line of memory.
     const std::size_t first_slot = ray_input_count_ + std::size_t(1);
     const std::size_t start = next_test_ < first_slot || next_test_ < place_count() ? next_test_ : 0;
     const std::uint32_t before = start < first_slot ? inputs & ((1U << start) - 1) : inputs;
@@ -312,7 +312,9 @@ void Cell::move_answer(std::size_t from, Cycle now) {
     settle(wait, id, now);
     wait.cause = Stall::none;
     pending_ &= ~in.pop_at(place, now);
-    if (in.occupancy_at(place) > 0) want(now + 1);
+    if (in.occupancy_at(place) == 0) return;
+    want(now + 1);
+    if (overdue_parked_) overdue_parked_ |= any_bit;  // what has come to the head may be older than its epoch
 }
 
 void Cell::move_rays(Cycle now) {

@@ -35,8 +35,10 @@ class alignas(64) Cell final : public Client {
 
     // Ask for the memory that the next step will touch, for hosts that know some steps ahead which cells they
     // run: each may read what the one before asked for. None changes anything.
-    void fetch() const;
+    void fetch() const { fetch(this); }
+    static void fetch(const void* cell);
     void fetch_links() const;
+    void fetch_ahead() const override { fetch_links(); }
     void fetch_messages() const;
     void fetch_ways() const;
 
@@ -252,8 +254,8 @@ class alignas(64) Cell final : public Client {
         Way(int to = no_way, int buffer_class = 0)
             : side(std::uint8_t(to & 15)), index(std::uint8_t(buffer_class & 15)) {}
     };
-    /// Asks for the line that a message over a link touches in the cell at its other end. Nobody reads what is
-    /// beyond the border: a hint may name any address.
+    /// Asks for the line that a message over a link touches in the cell at its other end. Nobody reads what
+    /// is beyond the border: a hint may name any address.
     void fetch_sender(std::size_t side, std::uint8_t place) const;
     void fetch_neighbour(std::size_t side) const {
         __builtin_prefetch(reinterpret_cast<const char*>(this) + env_.neighbours[side], 1);
@@ -264,6 +266,7 @@ class alignas(64) Cell final : public Client {
     static constexpr Cycle patience = 65536;
     static constexpr Cycle epoch = patience / 8;  ///< ages are counted in these
     static constexpr unsigned answer_bits = 12;
+    static constexpr std::uint32_t any_bit = 1U << (answer_bits - 1);  ///< in overdue_parked_: perhaps others
 
     // By cache lines: what every step looks at comes first, `hot_lines` of it; what few cells or reports
     // need, last. Words of bits have a bit per place: ray inputs from 0, the own ray after them, answers by
@@ -287,16 +290,16 @@ class alignas(64) Cell final : public Client {
     std::uint16_t children_ = 0;  ///< on their way out of slots
     std::uint8_t ray_input_count_ = 0;
     std::uint8_t own_attempts_ = 0;
-    std::uint8_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
-    Stall cause_ = Stall::none;       ///< why the last attempt to move something failed
-    bool look_to_shade_ : 1;          ///< a slot may have work for the shading unit
-    bool replies_first_ : 1;          ///< replies go before answers that came in, which went last
-    bool answer_moved_ : 1;           ///< this cycle: an answer left an input
-    bool moved_ : 1;                  ///< this cycle: something went on, or came home
-    bool blocked_ : 1;                ///< this cycle: something wanted to and could not
-    bool root_waits_ : 1;             ///< the pixel's intensity is still to come
-    bool root_to_send_ : 1;
-    bool overdue_parked_ : 1;  ///< there were overdue messages, all of which are parked
+    std::uint8_t answers_moved_ = 0;    ///< bit per side whose buffer of answers was read in this cycle
+    Stall cause_ = Stall::none;         ///< why the last attempt to move something failed
+    bool look_to_shade_ : 1;            ///< a slot may have work for the shading unit
+    bool replies_first_ : 1;            ///< replies go before answers that came in, which went last
+    bool answer_moved_ : 1;             ///< this cycle: an answer left an input
+    bool moved_ : 1;                    ///< this cycle: something went on, or came home
+    bool blocked_ : 1;                  ///< this cycle: something wanted to and could not
+    bool root_waits_ : 1;               ///< the pixel's intensity is still to come
+    bool root_to_send_ : 1;             ///< for the first time or again
+    std::uint16_t overdue_parked_ = 0;  ///< parked when overdue messages were looked for, and overdue
     std::uint32_t run_count_ = 0;
 
     const DepthRun* runs_ = nullptr;  ///< of the voxels, once they are all there
@@ -311,9 +314,9 @@ class alignas(64) Cell final : public Client {
     std::array<Link*, side_count> in_{};
     std::array<Link*, side_count> out_{};
 
-    std::array<Wait, side_count> answer_waits_{};          ///< of the oldest answer at each side
+    std::array<Wait, side_count> answer_waits_{};           ///< of the oldest answer at each side
     std::array<std::uint8_t, side_count> answer_places_{};  ///< of their buffers in the links
-    std::array<Way, most_ray_inputs + 1> ways_;            ///< by place, of inputs and the own ray
+    std::array<Way, most_ray_inputs + 1> ways_;             ///< by place, of inputs and the own ray
     Shading shading_;
 
     CellStatistics statistics_;  // its first line is the last hot one

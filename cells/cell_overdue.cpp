@@ -7,42 +7,43 @@
 namespace raycell {
 
 /// Moves what had waited for more than `patience` cycles when the epoch began, oldest first, whatever it is;
-/// the usual order follows for the others. Looks for it when an epoch begins in which there may be any, and in every step while there is:
-/// so it does not matter how often the cell runs.
+/// the usual order follows for the others. Looks for it when an epoch begins in which there may be any, and
+/// in every step while there is: so it does not matter how often the cell runs.
 void Cell::move_overdue(Cycle now) {
     const Cycle began = now / epoch * epoch;
     enum Kind { answer, reply, ray };
     std::vector<std::tuple<Cycle, Kind, std::size_t>> overdue;
-    overdue_parked_ = false;
-    Cycle oldest = now;  // of what is not overdue; what comes later, or from behind it in a buffer, is younger
-    const auto add = [&](Cycle since, Kind kind, std::size_t index, bool parked) {
+    overdue_parked_ = 0;
+    Cycle oldest =
+        now;  // of what is not overdue; what comes later, or from behind it in a buffer, is younger
+    const auto add = [&](Cycle since, Kind kind, std::size_t index, std::uint32_t bit) {
         if (since >= began || began - since <= patience) {
             oldest = std::min(oldest, since);
-        } else if (parked) {
-            overdue_parked_ = true;  // looked at again when it may move
+        } else if (parked_ & bit) {
+            overdue_parked_ |= std::uint16_t(bit);  // looked at again when it may move
         } else {
             overdue.emplace_back(since, kind, index);
         }
     };
     const int index = env_.classes.answer;
     for (int side = 0; side < side_count; ++side) {
-        if (!(pending_ >> (answer_bits + unsigned(side)) & 1)) continue;
-        const bool parked = parked_ >> (answer_bits + unsigned(side)) & 1;
+        const std::uint32_t bit = 1U << (answer_bits + unsigned(side));
+        if (!(pending_ & bit)) continue;
         const Link* in = in_[std::size_t(side)];
         const std::uint8_t place = answer_places_[std::size_t(side)];
         const Message* head = in->head_at(place, now);
         if (!head || head->kind != Message::Kind::answer) continue;
-        add(in->arrival_at(place) + env_.costs().route_return, answer, std::size_t(side), parked);
+        add(in->arrival_at(place) + env_.costs().route_return, answer, std::size_t(side), bit);
     }
-    if (shading_.job == Shading::Job::direct_answer) add(shading_.done, reply, 0, false);
+    if (shading_.job == Shading::Job::direct_answer) add(shading_.done, reply, 0, 0);
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
-        if (ray_store_[i].state == Slot::State::to_answer) add(ray_store_[i].changed, reply, 0, false);
+        if (ray_store_[i].state == Slot::State::to_answer) add(ray_store_[i].changed, reply, 0, 0);
     }
     for (std::size_t place = 0; place < place_count(); ++place) {
         if (nothing_at(place)) continue;
         const RayPacket* packet = packet_at(place);
         if (packet && packet->stage == RayPacket::Stage::decided) {
-            add(packet->decided, ray, place, parked_ & bit_of(place));
+            add(packet->decided, ray, place, bit_of(place));
         }
     }
     // Otherwise not before the epoch in which the oldest can be overdue.

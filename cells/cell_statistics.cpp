@@ -13,8 +13,7 @@ CellStatistics Cell::statistics(Cycle now) const {
     CellStatistics sum = statistics_;
     sum.slot_cycles += ray_store_.waiting_cycles(now);
     const auto add = [&](const Wait& wait) {
-        if (wait.cause != Stall::none && now > wait.since)
-            sum.stalls[wait.cause] += now - wait.since;
+        if (wait.cause != Stall::none && now > wait.since) sum.stalls[wait.cause] += now - wait.since;
     };
     for (std::size_t place = 0; place < place_count(); ++place) {
         if (nothing_at(place)) continue;

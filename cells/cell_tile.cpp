@@ -23,11 +23,20 @@ void CellTile::run() {
     Scheduler& scheduler = environment_.scheduler;
     const Cycle now = scheduler.now();
     const std::size_t count = active_.size();
-    // The first ones are asked for before anything runs. Beyond the last there is none, so below zero, which
-    // wraps, there is none either.
+    // Who runs in the next cycle is mostly known, and asked for behind the last of this one; the first ones
+    // are asked for before anything runs. Beyond the last there is none, so below zero, which wraps, neither.
+    const std::vector<Client*>& next_cycle = scheduler.foreseen(now + 1);
     for (std::size_t i = 0 - cells_ahead; i != count; ++i) {
-        if (i + cells_ahead < count) active_[i + cells_ahead]->fetch();
-        if (i + links_ahead < count) active_[i + links_ahead]->fetch_links();
+        if (i + cells_ahead < count) {
+            active_[i + cells_ahead]->fetch();
+        } else if (i + cells_ahead - count < next_cycle.size()) {
+            Cell::fetch(next_cycle[i + cells_ahead - count]);
+        }
+        if (i + links_ahead < count) {
+            active_[i + links_ahead]->fetch_links();
+        } else if (i + links_ahead - count < next_cycle.size()) {
+            next_cycle[i + links_ahead - count]->fetch_ahead();
+        }
         if (i + messages_ahead < count) active_[i + messages_ahead]->fetch_messages();
         if (i + ways_ahead < count) active_[i + ways_ahead]->fetch_ways();
         if (i >= count) continue;

@@ -42,9 +42,9 @@ void Cell::add_places(WaitMap& map) const {
         map.place(own_->ray,
                   map.add(this, 0, node(Kind::own, "own ray", describe(own_->ray), own_->decided)));
     if (shading_.job == Shading::Job::direct || shading_.job == Shading::Job::direct_answer) {
-        map.place(direct_.packet->ray, map.add(this, 0,
-                                                node(Kind::shading, "shading unit",
-                                                     describe(direct_.packet->ray), shading_.done)));
+        map.place(direct_.packet->ray,
+                  map.add(this, 0,
+                          node(Kind::shading, "shading unit", describe(direct_.packet->ray), shading_.done)));
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];

@@ -7,6 +7,7 @@
 #include "cells/message.hpp"
 #include "cells/observer.hpp"
 #include "cells/scheduler.hpp"
+#include "cells/time_out.hpp"
 #include "model/picture.hpp"
 #include "model/untimed.hpp"
 
@@ -79,8 +80,8 @@ struct Environment {
     /// Where the buffer of a class stands in the links between cells, by the side of their source or, the
     /// same, of the cell that they come to: Link::fetch().
     std::array<std::array<std::uint8_t, 5>, side_count> buffer_places{};
-    /// Bytes from a cell to its neighbour over each side, in an array that keeps its cells row by row: for asking
-    /// for their memory, no more. Zero where there is no array.
+    /// Bytes from a cell to its neighbour over each side, in an array that keeps its cells row by row: for
+    /// asking for their memory, no more. Zero where there is no array.
     std::array<std::ptrdiff_t, side_count> neighbours{};
     /// Cycles from an answer's arrival until its cell need look at it; 0 where it may stand in a ray's way.
     int answer_routing;
@@ -91,6 +92,7 @@ struct Environment {
     /// picture is larger than a cache.
     std::vector<std::uint32_t> pixel_hops;
     MessagePools pools;
+    Pool<TimeOut::Counts> wait_counts;
     Counters counters;
     Ledger ledger;
     Phase phase = Phase::load;

@@ -119,8 +119,9 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     bool sender_waits_at(std::uint8_t place) const { return buffer_at(place).sender_waits; }
     /// Returns what the sink is to take from its pending_: bits if the buffer is empty now.
     std::uint32_t pop_at(std::uint8_t place, Cycle now);
-    /// Asks the link to keep `bits`, of 0 to 15, set in its sink's pending_ while the buffer of a class holds anything, on
-    /// the wires or arrived: so a cell need not look into empty buffers. Throws std::logic_error without a sink.
+    /// Asks the link to keep `bits`, of 0 to 15, set in its sink's pending_ while the buffer of a class holds
+    /// anything, on the wires or arrived: so a cell need not look into empty buffers. Throws std::logic_error
+    /// without a sink.
     void watch(int index, std::uint32_t bits);
     /// Asks the link to set `bits`, of 0 to 15, in its source's room_made_ when a sender that can_send() has
     /// refused for want of room is woken: until then it need not ask again.

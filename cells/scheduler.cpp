@@ -77,7 +77,9 @@ void Scheduler::tick() {
         return;
     }
     running_.clear();
-    running_.swap(wheel_[now_ % slots]);
+    if (running_.capacity() > 0) spare_.push_back(std::move(running_));
+    running_ = std::move(wheel_[now_ % slots]);
+    wheel_[now_ % slots] = {};
     waiting_ -= running_.size();
     const auto far = far_.find(now_);
     if (far != far_.end()) {

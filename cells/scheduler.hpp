@@ -19,6 +19,8 @@ class Client {
     virtual ~Client() = default;
     /// Makes the client's process run in this evaluation phase.
     virtual void activate() = 0;
+    /// Asks for memory that it will touch when it is activated soon: changes nothing.
+    virtual void fetch_ahead() const {}
     /// Last cycle in which it was activated; `never` before the first.
     Cycle woken() const { return woken_; }
 
@@ -48,7 +50,12 @@ class Scheduler : public sc_core::sc_module {
         if (client.due_ == cycle) return;  // noted already: entries of cycles to come stay
         client.due_ = cycle;
         if (cycle - now_ < slots) {
-            wheel_[cycle % slots].push_back(&client);
+            std::vector<Client*>& due = wheel_[cycle % slots];
+            if (due.capacity() == 0 && !spare_.empty()) {
+                due.swap(spare_.back());
+                spare_.pop_back();
+            }
+            due.push_back(&client);
             ++waiting_;
         } else {
             far_[cycle].push_back(&client);
@@ -105,6 +112,9 @@ class Scheduler : public sc_core::sc_module {
         if (meet_) meeting_.notify(sc_core::SC_ZERO_TIME);
     }
 
+    /// Who is to be woken in a cycle after now(), as far as it is known: for asking for memory ahead.
+    const std::vector<Client*>& foreseen(Cycle cycle) const { return wheel_[cycle % slots]; }
+
     std::uint64_t activations() const { return activations_; }
 
     /// Runs the next cycle, without SystemC's kernel; false if there was none. For measuring what the kernel
@@ -124,6 +134,7 @@ class Scheduler : public sc_core::sc_module {
     sc_core::sc_event next_;
     sc_core::sc_event meeting_;
     std::vector<std::vector<Client*>> wheel_;
+    std::vector<std::vector<Client*>> spare_;  ///< room of cycles gone by: used last first, it is in a cache
     std::vector<Client*> running_;
     std::map<Cycle, std::vector<Client*>> far_;  ///< beyond one turn of the wheel
     Cycle now_ = 0;

@@ -3,8 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 
+#include "cells/pool.hpp"
 #include "cells/scheduler.hpp"
 
 namespace raycell {
@@ -17,11 +17,16 @@ class TimeOut {
     /// Time-outs that are told apart: powers of two.
     static constexpr int least_log = 4;
     static constexpr int most_log = 20;
+    /// Waits by their length: of 2^least_log cycles and more, and so on.
+    struct alignas(64) Counts {
+        std::array<std::uint32_t, most_log - least_log + 1> ended{};
+    };
 
-    /// The end of a cycle in which the cell ran; between such cycles nothing changes.
-    void step(bool moved, bool blocked, Cycle now) {
+    /// The end of a cycle in which the cell ran; between such cycles nothing changes. `counts` must outlive
+    /// it.
+    void step(bool moved, bool blocked, Cycle now, Pool<Counts>& counts) {
         if (since_ != never && (moved || !blocked)) {
-            count(now - since_);
+            count(now - since_, counts);
             since_ = never;
         }
         if (blocked && since_ == never) since_ = now;
@@ -30,27 +35,26 @@ class TimeOut {
     std::uint64_t ended(int log) const {
         if (!ended_) return 0;
         std::uint64_t sum = 0;
-        for (int i = log; i <= most_log; ++i) sum += (*ended_)[std::size_t(i - least_log)];
+        for (int i = log; i <= most_log; ++i) sum += ended_->ended[std::size_t(i - least_log)];
         return sum;
     }
     /// Since when the cell waits; `never` if it doesn't.
     Cycle since() const { return since_; }
     /// Asks for the memory that the end of a wait will touch.
     void fetch() const {
-        if (since_ != never) __builtin_prefetch(ended_.get(), 1);
+        if (since_ != never) __builtin_prefetch(ended_, 1);
     }
 
   private:
-    using Counts = std::array<std::uint32_t, most_log - least_log + 1>;
-    void count(Cycle length) {
+    void count(Cycle length, Pool<Counts>& counts) {
         int log = least_log - 1;
         while (log < most_log && length >> (log + 1)) ++log;
         if (log < least_log) return;
-        if (!ended_) ended_ = std::make_unique<Counts>(Counts{});
-        ++(*ended_)[std::size_t(log - least_log)];
+        if (!ended_) ended_ = counts.take();
+        ++ended_->ended[std::size_t(log - least_log)];
     }
     Cycle since_ = never;
-    std::unique_ptr<Counts> ended_;  ///< most cells never wait for long
+    Counts* ended_ = nullptr;  ///< most cells never wait for long
 };
 
 }  // namespace raycell
