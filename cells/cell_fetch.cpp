@@ -28,6 +28,7 @@ void Cell::fetch_links() const {
         constexpr std::uint32_t most = 32;
         constexpr std::uint32_t in_line = 64 / sizeof(DepthRun);
         for (std::uint32_t i = 0; i < std::min(run_count_, most); i += in_line) __builtin_prefetch(runs_ + i);
+        if (env_.context.traffic) __builtin_prefetch(&store_);
     }
     for (std::uint32_t rays = (decided_ | bit_in_test()) & ~parked_; rays; rays &= rays - 1) {
         const Way& way = ways_[std::size_t(__builtin_ctz(rays))];
@@ -57,6 +58,8 @@ void Cell::fetch_messages() const {
         if (!packet) continue;
         fetch_sender(std::size_t(ray_inputs_[place].side), ray_inputs_[place].place);
         fetch_object(packet, sizeof(RayPacket));
+        // Synthetic traffic knows the cell by its voxel.
+        if (env_.context.traffic) __builtin_prefetch(store_.voxels.data());
     }
     for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
         const auto side = std::size_t(__builtin_ctz(sides));

@@ -25,10 +25,7 @@ class CellModule : public sc_core::sc_module, public CellHost {
     sc_core::sc_vector<Port<LinkOut>> out;  ///< by Side
     Port<LinkIn> load_in;                   ///< from the row's distributor (first column only)
 
-    void activate(Cell&) override {
-        cell_.fetch();  // by the time it runs, the others having been woken, it is there
-        wake_.notify();
-    }
+    void activate(Cell&) override { wake_.notify(); }
     Cell& cell() { return cell_; }
     const Cell& cell() const { return cell_; }
 
