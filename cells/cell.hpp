@@ -9,6 +9,7 @@
 #include "cells/cell_host.hpp"
 #include "cells/cell_view.hpp"
 #include "cells/environment.hpp"
+#include "cells/fetch_line.hpp"
 #include "cells/link.hpp"
 #include "cells/ray_store.hpp"
 #include "cells/time_out.hpp"
@@ -258,7 +259,7 @@ class alignas(64) Cell final : public Client {
     /// is beyond the border: a hint may name any address.
     void fetch_sender(std::size_t side, std::uint8_t place) const;
     void fetch_neighbour(std::size_t side) const {
-        __builtin_prefetch(reinterpret_cast<const char*>(this) + env_.neighbours[side], 1);
+        fetch_line(reinterpret_cast<const char*>(this) + env_.neighbours[side]);
     }
 
     /// Cycles that a message which waits to move is passed over by others; after that it goes before all of

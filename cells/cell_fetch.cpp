@@ -9,7 +9,7 @@ namespace raycell {
 void Cell::fetch(const void* cell) {
     constexpr std::size_t line = 64;
     const char* at = static_cast<const char*>(cell);
-    for (std::size_t i = 0; i < hot_lines; ++i) __builtin_prefetch(at + i * line, 1);
+    for (std::size_t i = 0; i < hot_lines; ++i) fetch_line(at + i * line);
 }
 
 void Cell::fetch_links() const {
@@ -27,8 +27,8 @@ void Cell::fetch_links() const {
     if (pending_ & ~decided_ & ~bit_in_test()) {
         constexpr std::uint32_t most = 32;
         constexpr std::uint32_t in_line = 64 / sizeof(DepthRun);
-        for (std::uint32_t i = 0; i < std::min(run_count_, most); i += in_line) __builtin_prefetch(runs_ + i);
-        if (env_.context.traffic) __builtin_prefetch(&store_);
+        for (std::uint32_t i = 0; i < std::min(run_count_, most); i += in_line) fetch_line(runs_ + i);
+        if (env_.context.traffic) fetch_line(&store_);
     }
     for (std::uint32_t rays = (decided_ | bit_in_test()) & ~parked_; rays; rays &= rays - 1) {
         const Way& way = ways_[std::size_t(__builtin_ctz(rays))];
@@ -49,7 +49,7 @@ void Cell::fetch_messages() const {
     constexpr std::size_t line = 64;
     const auto fetch_object = [](const void* object, std::size_t bytes) {
         const char* at = static_cast<const char*>(object);
-        for (std::size_t i = 0; i < bytes; i += line) __builtin_prefetch(at + i, 1);
+        for (std::size_t i = 0; i < bytes; i += line) fetch_line(at + i);
     };
     for (std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1); inputs; inputs &= inputs - 1) {
         const auto place = std::size_t(__builtin_ctz(inputs));
@@ -59,7 +59,7 @@ void Cell::fetch_messages() const {
         fetch_sender(std::size_t(ray_inputs_[place].side), ray_inputs_[place].place);
         fetch_object(packet, sizeof(RayPacket));
         // Synthetic traffic knows the cell by its voxel.
-        if (env_.context.traffic) __builtin_prefetch(store_.voxels.data());
+        if (env_.context.traffic) fetch_line(store_.voxels.data());
     }
     for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
         const auto side = std::size_t(__builtin_ctz(sides));
@@ -79,7 +79,7 @@ void Cell::fetch_ways() const {
         const auto side = std::size_t(route(*head->answer));
         out_[side]->fetch(env_.buffer_places[side][std::size_t(env_.classes.answer)]);
         fetch_neighbour(side);
-        __builtin_prefetch(&env_.pixel_hops[std::size_t(head->answer->id >> 32)], 1);
+        fetch_line(&env_.pixel_hops[std::size_t(head->answer->id >> 32)]);
     }
 }
 

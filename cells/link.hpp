@@ -8,6 +8,7 @@
 #include <string>
 #include <systemc>
 
+#include "cells/fetch_line.hpp"
 #include "cells/message.hpp"
 #include "cells/observer.hpp"
 #include "cells/scheduler.hpp"
@@ -157,13 +158,13 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     /// Asks for the memory of a hop ahead: the link's first line and that of its `place`th buffer, which it
     /// takes on trust rather than read.
     void fetch(std::size_t place) const {
-        __builtin_prefetch(this, 1);
+        fetch_line(this);
         fetch_buffer(place);
     }
     /// The buffer's alone: all that a sink touches of a link.
-    void fetch_buffer(std::size_t place) const { __builtin_prefetch(&buffers_[place], 1); }
+    void fetch_buffer(std::size_t place) const { fetch_line(&buffers_[place]); }
     /// And what it takes to wake the source.
-    void fetch_source() const { __builtin_prefetch(this); }
+    void fetch_source() const { fetch_line(this); }
     /// The place of a class's buffer in a link that carries the classes `used`.
     static constexpr std::uint8_t place_of(int index, std::uint32_t used) {
         return std::uint8_t(__builtin_popcount(used & ((1U << unsigned(index)) - 1)));

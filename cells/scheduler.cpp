@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cells/fetch_line.hpp"
+
 namespace raycell {
 
 Scheduler::Scheduler(sc_core::sc_module_name name, sc_core::sc_time period)
@@ -88,7 +90,7 @@ void Scheduler::tick() {
     }
     constexpr std::size_t ahead = 16;  // a client that has not run for a while is in no cache
     for (std::size_t i = 0; i < running_.size(); ++i) {
-        if (i + ahead < running_.size()) __builtin_prefetch(running_[i + ahead], 1);
+        if (i + ahead < running_.size()) fetch_line(running_[i + ahead]);
         Client* client = running_[i];
         if (client->woken_ == now_) continue;
         client->woken_ = now_;

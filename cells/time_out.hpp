@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "cells/fetch_line.hpp"
 #include "cells/pool.hpp"
 #include "cells/scheduler.hpp"
 
@@ -42,7 +43,7 @@ class TimeOut {
     Cycle since() const { return since_; }
     /// Asks for the memory that the end of a wait will touch.
     void fetch() const {
-        if (since_ != never) __builtin_prefetch(ended_, 1);
+        if (since_ != never) fetch_line(ended_);
     }
 
   private:
