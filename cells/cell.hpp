@@ -247,17 +247,17 @@ class alignas(64) Cell final : public Client {
     }
     void unpark(Cycle now);
     std::uint32_t bit_in_test() const { return traversal_.packet ? bit_of(traversal_.place) : 0; }
-    /// The output that a decided ray at this place wants, for fetch_ways(): side and class.
     static constexpr int no_way = 15;
+    /// The output that a decided ray at this place wants, for fetch_links(): side and class.
     struct Way {
         std::uint8_t side : 4;
         std::uint8_t index : 4;
         Way(int to = no_way, int buffer_class = 0)
             : side(std::uint8_t(to & 15)), index(std::uint8_t(buffer_class & 15)) {}
     };
+    void fetch_sender(std::size_t side, std::uint8_t place) const;
     /// Asks for the line that a message over a link touches in the cell at its other end. Nobody reads what
     /// is beyond the border: a hint may name any address.
-    void fetch_sender(std::size_t side, std::uint8_t place) const;
     void fetch_neighbour(std::size_t side) const {
         fetch_line(reinterpret_cast<const char*>(this) + env_.neighbours[side]);
     }

@@ -14,8 +14,8 @@ void Cell::move_overdue(Cycle now) {
     enum Kind { answer, reply, ray };
     std::vector<std::tuple<Cycle, Kind, std::size_t>> overdue;
     overdue_parked_ = 0;
-    Cycle oldest =
-        now;  // of what is not overdue; what comes later, or from behind it in a buffer, is younger
+    // Of what is not overdue: what comes later, or from behind it in a buffer, is younger.
+    Cycle oldest = now;
     const auto add = [&](Cycle since, Kind kind, std::size_t index, std::uint32_t bit) {
         if (since >= began || began - since <= patience) {
             oldest = std::min(oldest, since);

@@ -70,7 +70,8 @@ struct Run {
 void foretell(const RenderOptions& options, const CellScene& scene, const TruthRenderer* truth, Run& run) {
     run.forecast = forecast(scene, options.picture, truth);
     const auto cells = std::size_t(options.picture.width) * std::size_t(options.picture.height);
-    run.expected = expected_seconds(run.forecast, cells, options.hosts == Hosts::cell);
+    run.expected =
+        expected_seconds(run.forecast, cells, options.hosts == Hosts::cell, launched_ranks().count);
     if (!options.load_array.empty()) run.expected.load = 0;
     if (run.expected.sum() > long_run && !options.quiet)
         std::cerr << expectation(run.forecast, run.expected) << '\n';

@@ -9,28 +9,32 @@ namespace {
 
 // What the simulator takes for each of what is foretold, nanoseconds, on one core of a server. The terms are
 // those that described 54 runs of the Standard Procedural Databases at 64x64 to 256x256 cells to within a
-// factor of 1.7; those of rays were then fitted to teapot-s4 at these sizes again, when hops had become
-// cheaper. `scripts/bench --only growth` measures seconds and hops (docs/performance.md).
+// factor of 1.7; those of rays were then fitted again, to teapot-s4 and balls-s2 at 64x64 to 512x512 cells
+// (results/bench_growth.md), when hops had become cheaper.
 constexpr double load_hop = 150;
 constexpr double load_step = 170;
 constexpr double load_cell = 2000;
-constexpr double ray_hop = 260;       ///< with one voxel to be looked at, where the array is in the caches
+constexpr double ray_hop = 230;       ///< with one voxel to be looked at, where the array is in the caches
 constexpr double ray_voxel = 10;      ///< for every voxel of a mean cell
-constexpr double ray_doubling = 40;   ///< for every doubling of the array above ...
+constexpr double ray_doubling = 10;   ///< for every doubling of the array above ...
 constexpr double small_array = 4096;  ///< ... so many cells
 constexpr double modules = 2.5;       ///< so many times where every cell is a module
+constexpr double rank = 0.8;          ///< of a rank's time goes into rays, the rest waits (docs/ranks.md)
 
 }  // namespace
 
-ExpectedSeconds expected_seconds(const Forecast& forecast, std::size_t cells, bool every_cell_is_a_module) {
+ExpectedSeconds expected_seconds(const Forecast& forecast, std::size_t cells, bool every_cell_is_a_module,
+                                 int ranks) {
     const double each = 1e-9 * (every_cell_is_a_module ? modules : 1);
     const double doublings = std::max(0.0, std::log2(double(cells) / small_array));
     const double hop = ray_hop + ray_doubling * doublings + ray_voxel * forecast.voxels / double(cells);
     ExpectedSeconds seconds;
     seconds.load =
         each * (load_hop * forecast.load_hops + load_step * forecast.load_steps + load_cell * double(cells));
-    seconds.precast = each * hop * forecast.precast_hops;
-    seconds.trace = each * hop * forecast.trace_hops;
+    // Loading gains nothing by ranks.
+    const double rays = each * hop / (ranks > 1 ? rank * ranks : 1);
+    seconds.precast = rays * forecast.precast_hops;
+    seconds.trace = rays * forecast.trace_hops;
     return seconds;
 }
 

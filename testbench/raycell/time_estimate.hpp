@@ -18,8 +18,9 @@ struct ExpectedSeconds {
 };
 
 /// By what hops cost on the machine on which the constants were measured (see the source). Without what it
-/// takes to build the machine.
-ExpectedSeconds expected_seconds(const Forecast& forecast, std::size_t cells, bool every_cell_is_a_module);
+/// takes to build the machine. `ranks`: processes that share the array, each on a core of its own.
+ExpectedSeconds expected_seconds(const Forecast& forecast, std::size_t cells, bool every_cell_is_a_module,
+                                 int ranks = 1);
 
 /// A run that is expected to take longer than this says so before it starts, seconds.
 constexpr double long_run = 60;

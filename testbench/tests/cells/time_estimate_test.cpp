@@ -49,12 +49,14 @@ TEST(TimeLeft, IsSaidOfEveryPhaseThatTakesTimeBeforeARun) {
               "about 16 min for 1.2e+03 M hops: precast 90 s, trace 15 min");
 }
 
-TEST(TimeLeft, IsMoreForMoreHopsLargerArraysAndModules) {
+TEST(TimeLeft, IsMoreForMoreHopsLargerArraysAndModulesAndLessForMoreRanks) {
     Forecast forecast;
     forecast.load_hops = forecast.load_steps = forecast.trace_hops = forecast.precast_hops = 1e6;
     const ExpectedSeconds one = expected_seconds(forecast, 4096, false);
     EXPECT_GT(expected_seconds(forecast, 65536, false).trace, one.trace);
     EXPECT_GT(expected_seconds(forecast, 4096, true).load, one.load);
+    EXPECT_DOUBLE_EQ(expected_seconds(forecast, 4096, false, 2).trace, one.trace / 1.6);
+    EXPECT_DOUBLE_EQ(expected_seconds(forecast, 4096, false, 2).load, one.load);
     forecast.trace_hops = 2e6;
     EXPECT_DOUBLE_EQ(expected_seconds(forecast, 4096, false).trace, 2 * one.trace);
     EXPECT_DOUBLE_EQ(expected_seconds(forecast, 4096, false).precast, one.precast);
