@@ -106,7 +106,7 @@ TEST(Foretold, LoadsInNoTimeWhereAnotherRunHasLoaded) {
 // ---- words
 
 const Words long_run{"render",       own_scene("still_life.nff").string(),
-                     "--cells",      "320x320",
+                     "--cells",      "448x448",
                      "--shadows",    "precast",
                      "--max-cycles", "10",
                      "-o",           "results/a"};
