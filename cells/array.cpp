@@ -25,8 +25,8 @@ Array::Array(sc_core::sc_module_name name, Environment& environment, const Granu
     : sc_module(name), environment_(environment) {
     const int width = environment.width();
     const ArrayShare& share = environment.share;
-    cells_.reserve(std::size_t(width) * std::size_t(share.rows()));
-    for (int y = share.first; y < share.end; ++y) {
+    cells_.reserve(std::size_t(width) * share.rows().size());
+    for (const int y : share.rows()) {
         for (int x = 0; x < width; ++x) cells_.emplace_back(environment, x, y);
     }
     const auto column = std::ptrdiff_t(sizeof(Cell));
@@ -41,7 +41,7 @@ void Array::make_hosts(const Granularity& granularity) {
     };
     const int tile_side = granularity.tile_side;
     const int columns = (environment_.width() + tile_side - 1) / tile_side;
-    const int rows = (environment_.share.rows() + tile_side - 1) / tile_side;
+    const int rows = (int(environment_.share.rows().size()) + tile_side - 1) / tile_side;
     for (int i = 0; !granularity.every_cell && i < columns * rows; ++i) {
         tiles_.push_back(
             std::make_unique<CellTile>(name_at("tile", i % columns, i / columns).c_str(), environment_));
@@ -52,7 +52,7 @@ void Array::make_hosts(const Granularity& granularity) {
             modules_[i] =
                 std::make_unique<CellModule>(name_at("cell", cell.x(), cell.y()).c_str(), environment_, cell);
         } else {
-            const int row = (cell.y() - environment_.share.first) / tile_side;
+            const int row = environment_.share.place(cell.y()) / tile_side;
             cell.set_host(*tiles_[std::size_t(row * columns + cell.x() / tile_side)]);
         }
     }
@@ -62,13 +62,15 @@ void Array::make_links() {
     const ArrayShare& share = environment_.share;
     links_.reserve(cells_.size() * side_count);
     ways_.reserve(cells_.size() * side_count);
-    for (int y = share.first; y < share.end; ++y) {
+    for (const int y : share.rows()) {
         for (int x = 0; x < environment_.width(); ++x) {
             for (int side = 0; side < side_count; ++side) make_link(x, y, Side(side));
         }
     }
-    if (share.above) make_half_links(*share.above, share.first, Side::north);
-    if (share.below) make_half_links(*share.below, share.end - 1, Side::south);
+    for (const Band& band : share.bands()) {
+        if (band.above) make_half_links(*band.above, band.first, Side::north);
+        if (band.below) make_half_links(*band.below, band.end - 1, Side::south);
+    }
 }
 
 void Array::make_link(int x, int y, Side side) {

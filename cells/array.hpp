@@ -74,7 +74,7 @@ class Array : public sc_core::sc_module {
 
   private:
     std::size_t index(int x, int y) const {
-        return std::size_t(y - environment_.share.first) * std::size_t(environment_.width()) + std::size_t(x);
+        return std::size_t(environment_.share.place(y)) * std::size_t(environment_.width()) + std::size_t(x);
     }
     void make_hosts(const Granularity& granularity);
     void make_links();

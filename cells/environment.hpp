@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "cells/array_share.hpp"
 #include "cells/ledger.hpp"
 #include "cells/message.hpp"
 #include "cells/observer.hpp"
@@ -14,7 +15,6 @@
 namespace raycell {
 
 class Link;
-class SplitLinks;
 
 enum class Phase : std::uint8_t { load, precast, trace };
 
@@ -56,18 +56,6 @@ struct LinkCycles {
     int shadow_ray;
     int intensity;
     int verdict;
-};
-
-/// The part of an array that this process simulates: rows of cells from `first` on, `end` not included. The
-/// others are another rank's, and the links to them are halves.
-struct ArrayShare {
-    int first = 0;
-    int end = 0;
-    SplitLinks* above = nullptr;  ///< with whoever has row first - 1; null: that is the array's border
-    SplitLinks* below = nullptr;  ///< with whoever has row `end`
-
-    bool contains(int y) const { return y >= first && y < end; }
-    int rows() const { return end - first; }
 };
 
 struct Environment {
@@ -114,7 +102,7 @@ struct Environment {
                  cycles_for(bits.verdict)},
           classes(buffer_classes(machine.networks)),
           answer_routing(classes.count > 1 ? int(machine.costs.route_return) : 0),
-          share(part ? *part : ArrayShare{0, scene.frame.height, nullptr, nullptr}),
+          share(part ? *part : ArrayShare(scene.frame.height)),
           scheduler(s),
           picture(p),
           pixel_hops(p.pixels.size()) {

@@ -3,6 +3,11 @@
 #include "cells/split_link.hpp"
 
 namespace raycell {
+namespace {
+
+std::string name_down(int y) { return "distribution.row_" + std::to_string(y) + ".down"; }
+
+}  // namespace
 
 void RowDistributor::take(LoadItem& item, Cycle now) {
     Environment& env = environment();
@@ -61,35 +66,42 @@ Cycle RowDistributor::step(Cycle now) {
 }
 
 Distribution::Distribution(sc_core::sc_module_name name, Environment& environment)
-    : sc_module(name), first_(environment.share.first) {
-    const ArrayShare& share = environment.share;
-    const int depth = environment.machine.buffer_depth;
-    const auto name_down = [](Link& link, int y) {
-        link.set_name("distribution.row_" + std::to_string(y) + ".down");
-    };
-    for (int y = share.first; y < share.end; ++y) {
+    : sc_module(name), share_(environment.share) {
+    for (const int y : share_.rows()) {
         const std::string row_name = "row_" + std::to_string(y);
         rows_.push_back(std::make_unique<RowDistributor>(row_name.c_str(), environment, y));
-        if (y == 0) continue;
-        links_.push_back(std::make_unique<Link>(environment.scheduler, 1, depth));
-        Link& link = *links_.back();
-        name_down(link, y - 1);
-        link.connect_sink(row(y));
-        row(y).in.bind(link);
-        if (y == share.first) {
-            share.above->add_sink(link);
-            continue;
-        }
-        environment.stall(link, link.name());
-        link.connect_source(row(y - 1));
-        row(y - 1).down.bind(link);
     }
-    if (!share.below) return;
-    Link& link = share.below->make_source(environment.scheduler, 1, depth);
-    name_down(link, share.end - 1);
+    for (const Band& band : share_.bands()) {
+        for (int y = band.first; y < band.end; ++y) {
+            if (y > 0) join_above(environment, y, y == band.first ? band.above : nullptr);
+        }
+        if (band.below) join_below(environment, band.end - 1, *band.below);
+    }
+}
+
+/// The way into row y, half of it where the row above is another rank's.
+void Distribution::join_above(Environment& environment, int y, SplitLinks* above) {
+    links_.push_back(std::make_unique<Link>(environment.scheduler, 1, environment.machine.buffer_depth));
+    Link& link = *links_.back();
+    link.set_name(name_down(y - 1));
+    link.connect_sink(row(y));
+    row(y).in.bind(link);
+    if (above) {
+        above->add_sink(link);
+        return;
+    }
     environment.stall(link, link.name());
-    link.connect_source(*rows_.back());
-    rows_.back()->down.bind(link);
+    link.connect_source(row(y - 1));
+    row(y - 1).down.bind(link);
+}
+
+/// The way out of row y to another rank's.
+void Distribution::join_below(Environment& environment, int y, SplitLinks& below) {
+    Link& link = below.make_source(environment.scheduler, 1, environment.machine.buffer_depth);
+    link.set_name(name_down(y));
+    environment.stall(link, link.name());
+    link.connect_source(row(y));
+    row(y).down.bind(link);
 }
 
 StageStatistics Distribution::statistics() const {

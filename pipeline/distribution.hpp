@@ -40,16 +40,19 @@ class RowDistributor : public Stage {
 class Distribution : public sc_core::sc_module {
   public:
     Distribution(sc_core::sc_module_name name, Environment& environment);
-    RowDistributor& row(int y) { return *rows_[std::size_t(y - first_)]; }
-    const RowDistributor& row(int y) const { return *rows_[std::size_t(y - first_)]; }
+    RowDistributor& row(int y) { return *rows_[std::size_t(share_.place(y))]; }
+    const RowDistributor& row(int y) const { return *rows_[std::size_t(share_.place(y))]; }
     StageStatistics statistics() const;
     /// Load messages in the column and in no row of cells.
     std::size_t holds() const;
-    /// From each row to the row below.
+    /// Into each row but row 0, from the row above.
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
 
   private:
-    int first_;  ///< the share's first row
+    void join_above(Environment& environment, int y, SplitLinks* above);
+    void join_below(Environment& environment, int y, SplitLinks& below);
+
+    const ArrayShare& share_;
     std::vector<std::unique_ptr<RowDistributor>> rows_;
     std::vector<std::unique_ptr<Link>> links_;
 };

@@ -85,12 +85,12 @@ void Machine::bind_pipeline() {
     to_distribution_.connect_source(precomputation_);
     precomputation_.out.bind(to_distribution_);
     const ArrayShare& share = environment_.share;
-    if (share.first == 0) {
+    if (share.contains(0)) {
         to_distribution_.connect_sink(distribution_.row(0));
         distribution_.row(0).in.bind(to_distribution_);
     }
 
-    for (int y = share.first; y < share.end; ++y) {
+    for (const int y : share.rows()) {
         row_links_.push_back(std::make_unique<Link>(scheduler_, 1, environment_.machine.buffer_depth));
         Link& link = *row_links_.back();
         link.set_name("distribution.row_" + std::to_string(y) + ".east");
@@ -184,7 +184,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
         precast_rays_ *= environment_.context.sources.size();
     }
     if (phase == Phase::load) {
-        if (environment_.share.first == 0) geometry_.start();
+        if (environment_.share.contains(0)) geometry_.start();
     } else {
         if (environment_.observer) environment_.observer->phase_begins(phase, scheduler_.now() + 1);
         array_.begin_phase();

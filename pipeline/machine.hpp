@@ -183,11 +183,21 @@ class Machine : public sc_core::sc_module {
     T joined(T mine, Join join) const;
     std::uint64_t sum(std::uint64_t mine) const;
     void put_waits_together(WaitMap& map) const;
-    std::vector<std::string> joined_lines(std::vector<std::vector<std::string>> sections) const;
+    /// A line of a report, and the row of cells that it is about.
+    struct RowLine {
+        int row;
+        std::string text;
+    };
+    /// Sections one after the other, of all ranks, each by rows.
+    std::vector<std::string> joined_lines(std::vector<std::vector<RowLine>> sections) const;
     void join_activity(Activity& activity) const;
     std::uint64_t joined_schedule_hash() const;
     void join_ledger(Ledger& ledger) const;
     Picture whole_picture() const;
+    struct BandCells;
+    BandCells cells_of(const Band& band) const;
+    struct FarBuffer;
+    void add_far_buffers(const WaitMap& map, int band, std::vector<FarBuffer>& far) const;
     bool kick_finds_work();
     bool buffers_empty() const;
 

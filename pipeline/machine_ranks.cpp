@@ -26,23 +26,28 @@ std::uint64_t Machine::sum(std::uint64_t mine) const {
     return joined(mine, [](std::uint64_t& a, std::uint64_t b) { a += b; });
 }
 
-std::vector<std::string> Machine::joined_lines(std::vector<std::vector<std::string>> sections) const {
-    std::vector<std::string> lines;
-    const auto append = [&](const std::vector<std::string>& more) {
-        lines.insert(lines.end(), more.begin(), more.end());
-    };
-    if (!ranks_) {
-        for (const auto& section : sections) append(section);
-        return lines;
-    }
-    for (const auto& section : sections) {
-        ByteWriter bytes;
-        for (const std::string& line : section) bytes.put(line);
-        for (const Bytes& theirs : ranks_->gather_for_all(bytes.take())) {
-            for (ByteReader reader(theirs); !reader.at_end();) lines.push_back(reader.get_text());
+std::vector<std::string> Machine::joined_lines(std::vector<std::vector<RowLine>> sections) const {
+    std::vector<std::string> texts;
+    for (std::vector<RowLine>& lines : sections) {
+        if (ranks_) {
+            ByteWriter bytes;
+            for (const RowLine& line : lines) {
+                bytes.put(line.row);
+                bytes.put(line.text);
+            }
+            lines.clear();
+            for (const Bytes& theirs : ranks_->gather_for_all(bytes.take())) {
+                for (ByteReader reader(theirs); !reader.at_end();) {
+                    const int row = reader.get<int>();
+                    lines.push_back({row, reader.get_text()});
+                }
+            }
+            std::stable_sort(lines.begin(), lines.end(),
+                             [](const RowLine& a, const RowLine& b) { return a.row < b.row; });
         }
+        for (RowLine& line : lines) texts.push_back(std::move(line.text));
     }
-    return lines;
+    return texts;
 }
 
 /// Levels are differences of counters, each of which another rank may have counted: single ranks' are numbers
@@ -60,13 +65,14 @@ void Machine::join_activity(Activity& activity) const {
 
 std::uint64_t Machine::joined_schedule_hash() const {
     if (!ranks_) return array_.schedule_hash();
-    std::vector<std::uint64_t> hashes;
-    for (const Cell& cell : array_.cells()) hashes.push_back(cell.schedule_hash());
-    ByteWriter bytes;
-    bytes.put_all(hashes);
+    ByteWriter bytes;  // cells stand in the order of their rows
+    for (const Cell& cell : array_.cells()) bytes.put(cell.schedule_hash());
     ScheduleHash whole;
-    for (const Bytes& theirs : ranks_->gather(bytes.take())) {
-        for (const std::uint64_t hash : ByteReader(theirs).get_all<std::uint64_t>()) whole.add(hash);
+    RankReaders readers(*ranks_, ranks_->gather(bytes.take()));
+    if (readers.empty()) return 0;  // rank 0 knows
+    for (int y = 0; y < environment_.height(); ++y) {
+        ByteReader& row = readers.of_row(y);
+        for (int x = 0; x < environment_.width(); ++x) whole.add(row.get<std::uint64_t>());
     }
     return whole.value();
 }
@@ -100,34 +106,33 @@ Picture Machine::whole_picture() const {
         std::uint32_t hops;
     };
     const auto width = std::size_t(environment_.width());
-    const std::size_t first = std::size_t(environment_.share.first) * width;
-    const std::size_t end = std::size_t(environment_.share.end) * width;
     const std::vector<Pixel>& mine = picture_.pixels;
     std::vector<Abroad> abroad;
-    for (std::size_t i = 0; i < mine.size(); ++i) {
-        const Pixel& p = mine[i];
-        if ((i >= first && i < end) || (hops[i] == 0 && p.postponed == 0 && p.polygon == no_polygon))
-            continue;
-        abroad.push_back({i, p.depth, p.normal, p.polygon, p.postponed, hops[i]});
-    }
     ByteWriter bytes;
-    bytes.put(std::uint64_t(first));
-    std::vector<Pixel> home(mine.begin() + std::ptrdiff_t(first), mine.begin() + std::ptrdiff_t(end));
-    for (std::size_t i = first; i < end; ++i) home[i - first].hops = hops[i];
-    bytes.put_all(home);
-    bytes.put_all(abroad);
-    const std::vector<Bytes> all = ranks_->gather(bytes.take());
-    Picture picture = all.empty() ? Picture() : Picture(picture_.width, picture_.height);
-    std::vector<std::vector<Abroad>> others;
-    for (const Bytes& theirs : all) {
-        ByteReader reader(theirs);
-        const auto from = reader.get<std::uint64_t>();
-        const auto rows = reader.get_all<Pixel>();
-        std::copy(rows.begin(), rows.end(), picture.pixels.begin() + std::ptrdiff_t(from));
-        others.push_back(reader.get_all<Abroad>());
+    for (int y = 0; y < environment_.height(); ++y) {
+        const std::size_t first = std::size_t(y) * width;
+        if (environment_.share.contains(y)) {
+            std::vector<Pixel> row(&mine[first], &mine[first] + width);
+            for (std::size_t x = 0; x < width; ++x) row[x].hops = hops[first + x];
+            bytes.put_all(row);
+            continue;
+        }
+        for (std::size_t i = first; i < first + width; ++i) {
+            const Pixel& p = mine[i];
+            if (hops[i] == 0 && p.postponed == 0 && p.polygon == no_polygon) continue;
+            abroad.push_back({i, p.depth, p.normal, p.polygon, p.postponed, hops[i]});
+        }
     }
-    for (const auto& list : others) {
-        for (const Abroad& a : list) {
+    bytes.put_all(abroad);
+    RankReaders readers(*ranks_, ranks_->gather(bytes.take()));
+    if (readers.empty()) return {};
+    Picture picture(picture_.width, picture_.height);
+    for (int y = 0; y < environment_.height(); ++y) {
+        const auto row = readers.of_row(y).get_all<Pixel>();
+        std::copy(row.begin(), row.end(), picture.pixels.begin() + std::ptrdiff_t(y) * picture_.width);
+    }
+    for (ByteReader& reader : readers) {
+        for (const Abroad& a : reader.get_all<Abroad>()) {
             Pixel& pixel = picture.pixels.at(a.pixel);
             pixel.hops += a.hops;
             pixel.postponed += a.postponed;
@@ -140,80 +145,99 @@ Picture Machine::whole_picture() const {
     return picture;
 }
 
-/// Places in the order in which one rank alone would have them, so that all numbers are the same; then each
-/// rank says what its own wait for. A source's half of a link knows the far end's place by the link's number.
-void Machine::put_waits_together(WaitMap& map) const {
-    using Kind = WaitGraph::Kind;
-    struct FarBuffer {
-        int rank;  ///< that has the source's half
-        std::uint32_t number;
-        std::uint32_t index;
-        WaitGraph::Index node;
-        bool exterior;  ///< a place of the exterior's, not of the cells'
-    };
-    WaitMap cells;
-    WaitMap exterior;
-    for (const Cell& cell : array_.cells()) cell.add_places(cells);
-    if (exterior_) exterior_->add_places(exterior);
-    std::vector<FarBuffer> far;
+/// Cells of a band of rows that this rank has.
+struct Machine::BandCells {
+    const Cell* first;
+    const Cell* last;
+    const Cell* begin() const { return first; }
+    const Cell* end() const { return last; }
+};
+
+Machine::BandCells Machine::cells_of(const Band& band) const {
+    const Cell* first = &array_.cell(0, band.first);
+    return {first, first + std::ptrdiff_t(band.end - band.first) * environment_.width()};
+}
+
+/// A buffer of a link whose source's half is another rank's: which place it is, by the band of its cell.
+struct Machine::FarBuffer {
+    int rank;  ///< that has the source's half
+    std::uint32_t number;
+    std::uint32_t index;
+    int band;  ///< no_band: a place of the exterior's
+    WaitGraph::Index node;  ///< counted from the first of the band
+    static constexpr int no_band = -1;
+};
+
+/// Adds the buffers at this rank's ends of links whose places are in `map`.
+void Machine::add_far_buffers(const WaitMap& map, int band, std::vector<FarBuffer>& far) const {
     for (int rank = 0; rank < ranks_->count(); ++rank) {
         const SplitLinks* split = ranks_->links_to(rank);
         for (std::uint32_t number = 0; split && number < split->halves(); ++number) {
             if (split->has_source(number)) continue;
             const Link* link = &split->half(number);
             for (std::uint32_t index = 0; index < std::uint32_t(link->classes()); ++index) {
-                if (const auto node = cells.find(link, Kind::buffer, index))
-                    far.push_back({rank, number, index, *node, false});
-                if (const auto node = exterior.find(link, Kind::buffer, index))
-                    far.push_back({rank, number, index, *node, true});
+                if (const auto node = map.find(link, WaitGraph::Kind::buffer, index))
+                    far.push_back({rank, number, index, band, *node});
             }
         }
     }
-    ByteWriter bytes;
-    bytes.put_all(far);
-    cells.write(bytes);
-    exterior.write(bytes);
-    const std::vector<Bytes> all = ranks_->gather_for_all(bytes.take());
+}
+
+/// Places in the order in which one rank alone would have them, so that all numbers are the same; then each
+/// rank says what its own wait for. A source's half of a link knows the far end's place by the link's number.
+void Machine::put_waits_together(WaitMap& map) const {
+    std::vector<FarBuffer> far;
+    ByteWriter places;
+    for (const Band& band : environment_.share.bands()) {
+        WaitMap cells;
+        for (const Cell& cell : cells_of(band)) cell.add_places(cells);
+        add_far_buffers(cells, ranks_->band_of(band.first), far);
+        cells.write(places);
+    }
+    WaitMap exterior;
+    if (exterior_) exterior_->add_places(exterior);
+    add_far_buffers(exterior, FarBuffer::no_band, far);
+    exterior.write(places);
+    places.put_all(far);
+    RankReaders readers(*ranks_, ranks_->gather_for_all(places.take()));
 
     const auto next = [&] { return WaitGraph::Index(map.graph().nodes().size()); };
-    WaitGraph::Index own = 0;
-    WaitGraph::Index own_end = 0;
     std::vector<WaitGraph::Index> starts;
-    std::vector<ByteReader> readers;
-    std::vector<std::vector<FarBuffer>> buffers;
-    for (std::size_t rank = 0; rank < all.size(); ++rank) {
-        readers.emplace_back(all[rank]);
-        buffers.push_back(readers.back().get_all<FarBuffer>());
+    for (int band = 0; band < ranks_->bands(); ++band) {
         starts.push_back(next());
-        const bool me = int(rank) == ranks_->rank();
-        if (me) own = next();
-        if (me) {
-            for (const Cell& cell : array_.cells()) cell.add_places(map);
-            WaitMap skipped;
-            skipped.read(readers.back());
-            own_end = next();
-        } else {
-            map.read(readers.back());
+        ByteReader& reader = readers.of_row(ranks_->first_row(band));
+        const Band* mine = environment_.share.band_at(ranks_->first_row(band));
+        if (!mine) {
+            map.read(reader);
+            continue;
         }
+        for (const Cell& cell : cells_of(*mine)) cell.add_places(map);
+        WaitMap skipped;
+        skipped.read(reader);
     }
     const WaitGraph::Index exterior_start = next();  // rank 0's, behind all cells'
-    if (exterior_) {
-        exterior_->add_places(map);
-    } else {
-        map.read(readers.front());
-    }
-    for (std::size_t rank = 0; rank < all.size(); ++rank) {
-        for (const FarBuffer& buffer : buffers[rank]) {
+    starts.push_back(exterior_start);
+    if (exterior_) exterior_->add_places(map);
+    int rank = 0;
+    for (ByteReader& reader : readers) {
+        WaitMap skipped;  // of a rank without an exterior nothing
+        (rank == 0 && !exterior_ ? map : skipped).read(reader);
+        for (const FarBuffer& buffer : reader.get_all<FarBuffer>()) {
             if (buffer.rank != ranks_->rank()) continue;
-            const Link* half = &ranks_->links_to(int(rank))->half(buffer.number);
-            map.name(half, Kind::buffer, buffer.index,
-                     (buffer.exterior ? exterior_start : starts[rank]) + buffer.node);
+            const Link* half = &ranks_->links_to(rank)->half(buffer.number);
+            const bool outside = buffer.band == FarBuffer::no_band;
+            const WaitGraph::Index start = outside ? exterior_start : starts[std::size_t(buffer.band)];
+            map.name(half, WaitGraph::Kind::buffer, buffer.index, start + buffer.node);
         }
+        ++rank;
     }
     for (const Cell& cell : array_.cells()) cell.add_waits(map);
     if (exterior_) exterior_->add_waits(map);
     ByteWriter waits;
-    map.write_waits(waits, own, own_end);
+    for (const Band& band : environment_.share.bands()) {
+        const auto at = std::size_t(ranks_->band_of(band.first));
+        map.write_waits(waits, starts[at], starts[at + 1]);
+    }
     map.write_waits(waits, exterior_start, exterior_ ? next() : exterior_start);
     for (const Bytes& theirs : ranks_->gather_for_all(waits.take())) {
         for (ByteReader reader(theirs); !reader.at_end();) map.read_waits(reader);

@@ -120,25 +120,27 @@ bool Machine::kick_finds_work() {
 }
 
 std::vector<std::string> Machine::stuck_report() const {
-    std::vector<std::vector<std::string>> sections(4);  // cells, then links: of each all ranks' together
+    std::vector<std::vector<RowLine>> sections(4);  // cells, then links: of each all ranks' together
     for (const Cell& cell : array_.cells()) {
-        auto more = cell.describe_blocked();
-        sections[0].insert(sections[0].end(), more.begin(), more.end());
+        for (std::string& line : cell.describe_blocked()) sections[0].push_back({cell.y(), std::move(line)});
     }
-    const auto add_links = [](std::vector<std::string>& lines,
-                              const std::vector<std::unique_ptr<Link>>& links) {
-        for (const auto& link : links) {
-            for (int index = 0; index < link->classes(); ++index) {
-                if (link->occupancy(index) == 0) continue;
-                lines.push_back("link " + link->name() + " class " + std::to_string(index) + " since cycle " +
-                                std::to_string(link->arrival(index)) + ": " +
-                                std::to_string(link->occupancy(index)) + " messages");
-            }
+    const auto add_link = [](std::vector<RowLine>& lines, int row, const Link& link) {
+        for (int index = 0; index < link.classes(); ++index) {
+            if (link.occupancy(index) == 0) continue;
+            lines.push_back({row, "link " + link.name() + " class " + std::to_string(index) +
+                                      " since cycle " + std::to_string(link.arrival(index)) + ": " +
+                                      std::to_string(link.occupancy(index)) + " messages"});
         }
     };
-    add_links(sections[1], distribution_.links());
-    add_links(sections[2], row_links_);
-    if (exterior_) add_links(sections[3], exterior_->links());
+    const std::vector<int>& rows = environment_.share.rows();
+    const std::size_t no_link = rows.front() == 0;  // leads into row 0
+    for (std::size_t i = no_link; i < rows.size(); ++i) {
+        add_link(sections[1], rows[i], *distribution_.links()[i - no_link]);
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) add_link(sections[2], rows[i], *row_links_[i]);
+    if (exterior_) {
+        for (const auto& link : exterior_->links()) add_link(sections[3], 0, *link);
+    }
     std::vector<std::string> lines = joined_lines(std::move(sections));
     const auto age = [](const std::string& line) {
         const auto at = line.find("since cycle ");
@@ -182,7 +184,6 @@ void Machine::collect_time_outs(RunResult& result) const {
     for (const auto& knot : result.waits.knots()) {
         missed += sum(std::uint64_t(std::count_if(knot.begin(), knot.end(), seen))) == 0;
     }
-    const std::size_t offset = index(0, environment_.share.first);
     struct Sums {
         TimeOutResult all;
         Cycle first = never;
@@ -201,8 +202,9 @@ void Machine::collect_time_outs(RunResult& result) const {
         Sums& mine = sums[at];
         mine.all.cycles = Cycle(1) << log;
         for (std::size_t i = 0; i < array_.cells().size(); ++i) {
-            const TimeOut& time_out = array_.cells()[i].time_out();
-            const int state = locked[offset + i];
+            const Cell& cell = array_.cells()[i];
+            const TimeOut& time_out = cell.time_out();
+            const int state = locked[index(cell.x(), cell.y())];
             (state ? mine.all.early_alarms : mine.all.false_alarms) += time_out.ended(log);
             mine.all.knot_cells += state == 2;
             if (!state || time_out.since() == never) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <set>
 #include <stdexcept>
 
 namespace raycell {
@@ -25,29 +26,23 @@ void RankProgress::join(const RankProgress& other) {
     interrupted = std::max(interrupted, other.interrupted);
 }
 
-std::vector<int> even_rank_rows(int count, int height) {
-    if (count > height) {
-        throw std::invalid_argument(std::to_string(count) + " ranks for " + std::to_string(height) +
+std::vector<int> even_bands(int ranks, int height) {
+    constexpr int most = 8;   ///< bands of a rank: of more, no cycle becomes more even
+    constexpr int least = 4;  ///< rows, where a rank has more than one band
+    if (ranks > height) {
+        throw std::invalid_argument(std::to_string(ranks) + " ranks for " + std::to_string(height) +
                                     " rows of cells; expected a row for each at least");
     }
+    const int bands = ranks * std::clamp(height / ranks / least, 1, most);
     std::vector<int> rows;
-    for (int i = 0; i <= count; ++i) rows.push_back(int(std::int64_t(height) * i / count));
+    for (int i = 0; i <= bands; ++i) rows.push_back(int(std::int64_t(height) * i / bands));
     return rows;
 }
 
-RankExchange::RankExchange(RankTransport& transport, std::vector<int> rows, bool with_exterior)
-    : transport_(transport), rows_(std::move(rows)) {
-    share_.first = rows_.at(std::size_t(rank()));
-    share_.end = rows_.at(std::size_t(rank()) + 1);
-    for (int other = 0; other < count(); ++other) {
-        const bool neighbour = other == rank() - 1 || other == rank() + 1;
-        const bool border = with_exterior && other != rank() && (other == 0 || rank() == 0);
-        if (!neighbour && !border) continue;
-        peers_.push_back({other, std::make_unique<SplitLinks>()});
-        peers_.back().links->set_prefix(sizeof(RankProgress));
-    }
-    share_.above = links_to(rank() - 1);
-    share_.below = links_to(rank() + 1);
+RankExchange::RankExchange(RankTransport& transport, std::vector<int> bands, bool with_exterior)
+    : transport_(transport), bands_(std::move(bands)), share_(0) {
+    make_peers(with_exterior);
+    share_ = ArrayShare(bands_.back(), own_bands());
     for (const Peer& peer : peers_) {
         parcels_.emplace_back();
         parcels_.back().rank = peer.rank;
@@ -55,8 +50,34 @@ RankExchange::RankExchange(RankTransport& transport, std::vector<int> rows, bool
     short_out_.resize(sizeof(RankProgress));
 }
 
-int RankExchange::owner(int y) const {
-    return int(std::upper_bound(rows_.begin(), rows_.end(), y) - rows_.begin()) - 1;
+void RankExchange::make_peers(bool with_exterior) {
+    std::set<int> others;
+    for (int band = 1; band < bands(); ++band) {
+        if (band % count() == rank()) others.insert((band - 1) % count());
+        if ((band - 1) % count() == rank()) others.insert(band % count());
+    }
+    for (int other = 0; with_exterior && other < count(); ++other) {
+        if (other == 0 || rank() == 0) others.insert(other);
+    }
+    others.erase(rank());
+    for (const int other : others) {
+        peers_.push_back({other, std::make_unique<SplitLinks>()});
+        peers_.back().links->set_prefix(sizeof(RankProgress));
+    }
+}
+
+std::vector<Band> RankExchange::own_bands() {
+    std::vector<Band> own;
+    for (int band = rank(); band < bands(); band += count()) {
+        own.push_back({first_row(band), first_row(band + 1), nullptr, nullptr});
+        if (band > 0) own.back().above = links_to((band - 1) % count());
+        if (band + 1 < bands()) own.back().below = links_to((band + 1) % count());
+    }
+    return own;
+}
+
+int RankExchange::band_of(int y) const {
+    return int(std::upper_bound(bands_.begin(), bands_.end(), y) - bands_.begin()) - 1;
 }
 
 SplitLinks* RankExchange::links_to(int other) {

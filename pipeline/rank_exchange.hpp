@@ -46,23 +46,28 @@ class RankTransport {
     virtual std::vector<Bytes> gather(const Bytes& mine) = 0;
 };
 
-/// Where each rank's rows begin, and behind the last one's the array's height: as even as they can be. Throws
+/// The rows at which bands of rows begin, and behind the last one the array's height; the bands are the
+/// ranks' in turn. Several each, because what is busy moves across the array, and no two halves of it are
+/// busy at the same time; all of them as high as each other, as nearly as can be. Throws
 /// std::invalid_argument for fewer rows than ranks.
-std::vector<int> even_rank_rows(int count, int height);
+std::vector<int> even_bands(int ranks, int height);
 
 /// A rank's view of the others: links to them, meetings at the end of each cycle, sums over all.
 class RankExchange {
   public:
-    /// `rows` as even_rank_rows() has them: from 0, and each rank has one at least. `with_exterior`: the
-    /// border of every rank's rows is joined to the exterior processors, which are rank 0's. The transport
-    /// must outlive it.
-    RankExchange(RankTransport& transport, std::vector<int> rows, bool with_exterior);
+    /// `bands` as even_bands() has them: from 0, and each rank has one at least. `with_exterior`: the border
+    /// of every rank's rows is joined to the exterior processors, which are rank 0's. The transport must
+    /// outlive it.
+    RankExchange(RankTransport& transport, std::vector<int> bands, bool with_exterior);
 
     int rank() const { return transport_.rank(); }
     int count() const { return transport_.count(); }
     const ArrayShare& share() const { return share_; }
+    int bands() const { return int(bands_.size()) - 1; }
+    int first_row(int band) const { return bands_[std::size_t(band)]; }
+    int band_of(int y) const;
     /// Who has row y.
-    int owner(int y) const;
+    int owner(int y) const { return band_of(y) % count(); }
     /// The links that are shared with another rank; null where there is nothing to share.
     SplitLinks* links_to(int other);
 
@@ -89,16 +94,40 @@ class RankExchange {
         int rank;
         std::unique_ptr<SplitLinks> links;
     };
+    void make_peers(bool with_exterior);
+    std::vector<Band> own_bands();
     void carry(const RankProgress& mine, bool with_links);
 
     RankTransport& transport_;
-    std::vector<int> rows_;
+    std::vector<int> bands_;
     ArrayShare share_;
     std::vector<Peer> peers_;
     std::vector<RankTransport::Parcel> parcels_;
     Bytes short_out_;
     RankProgress agreed_;
     Statistics statistics_;
+};
+
+/// What all ranks gave, to be read by the rows of the array or rank by rank. On a rank that was given
+/// nothing, empty.
+class RankReaders {
+  public:
+    /// `all` in the order of ranks. `ranks` must outlive it.
+    RankReaders(const RankExchange& ranks, std::vector<Bytes> all) : ranks_(ranks), all_(std::move(all)) {
+        for (const Bytes& bytes : all_) readers_.emplace_back(bytes);
+    }
+    RankReaders(const RankReaders&) = delete;
+    RankReaders& operator=(const RankReaders&) = delete;
+    bool empty() const { return readers_.empty(); }
+    /// Of the rank that has row y.
+    ByteReader& of_row(int y) { return readers_[std::size_t(ranks_.owner(y))]; }
+    std::vector<ByteReader>::iterator begin() { return readers_.begin(); }
+    std::vector<ByteReader>::iterator end() { return readers_.end(); }
+
+  private:
+    const RankExchange& ranks_;
+    std::vector<Bytes> all_;
+    std::vector<ByteReader> readers_;
 };
 
 }  // namespace raycell

@@ -76,7 +76,7 @@ class Line {
 
 }  // namespace
 
-std::string cells_csv(Machine& machine, const RunResult& result) {
+std::string cells_csv_header() {
     std::string text =
         "x,y,voxels,edges,ray_store_peak,ray_store_mean,ray_buffers_peak,ray_buffers_mean,"
         "answer_buffers_peak,answer_buffers_mean,link_busy_cycles,traversal_cycles,shading_cycles,hops_load,"
@@ -84,8 +84,11 @@ std::string cells_csv(Machine& machine, const RunResult& result) {
     for (std::size_t cause = 1; cause <= stall_causes; ++cause) {
         text += std::string(",stall_") + stall_names[cause];
     }
-    text += '\n';
-    if (machine.environment().share.first > 0) text.clear();  // rank 0 has it
+    return text + '\n';
+}
+
+std::vector<std::string> cells_csv_rows(Machine& machine, const RunResult& result) {
+    std::vector<std::string> rows(machine.environment().share.rows().size());
     const Cycle now = machine.environment().scheduler.now();
     const Cycle cycles = result.precast_cycles + result.trace_cycles;
     const std::vector<Inputs> inputs = inputs_of(machine);
@@ -97,7 +100,7 @@ std::string cells_csv(Machine& machine, const RunResult& result) {
         for (const std::uint64_t cycles_of_cause : s.stalls) stalls += cycles_of_cause;
         const double stored =
             result.trace_cycles > 0 ? double(s.slot_cycles) / double(result.trace_cycles) : 0.0;
-        Line line(text);
+        Line line(rows[i / std::size_t(machine.environment().width())]);
         line << cell.x() << cell.y() << std::uint64_t(cell.store().voxels.size())
              << std::uint64_t(cell.store().edges.size()) << cell.ray_store().peak() << stored << in.rays.peak
              << in.rays.mean(cycles) << in.answers.peak << in.answers.mean(cycles) << in.busy_cycles
@@ -105,7 +108,7 @@ std::string cells_csv(Machine& machine, const RunResult& result) {
              << s.postponed << stalls;
         for (std::size_t cause = 1; cause <= stall_causes; ++cause) line << s.stalls[Stall(cause)];
     }
-    return text;
+    return rows;
 }
 
 std::string cells_csv(const UntimedMachine& machine) {

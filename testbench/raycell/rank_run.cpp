@@ -50,7 +50,7 @@ CellScene scene_of(ByteReader& bytes) {
 void add_rank_options(CLI::App& app, RenderOptions& options) {
     app.add_option(
            "--rank-rows", options.rank_rows,
-           "with mpirun: the rows at which the ranks after the first begin; else all have equally many")
+           "with mpirun: the rows at which bands of rows begin, after the first; they are the ranks' in turn")
         ->delimiter(',')
         ->type_name("ROW,...");
 }
@@ -61,11 +61,12 @@ void check_ranks(const RenderOptions& options) {
     if (!rows.empty()) {
         const bool rising =
             std::adjacent_find(rows.begin(), rows.end(), std::greater_equal<>()) == rows.end();
-        if (rows.size() + 1 != count || !rising || rows.front() < 1 ||
-            rows.back() >= options.picture.height) {
+        if (count == 1) throw UsageError("--rank-rows: expected several ranks, started by mpirun");
+        if (rows.size() + 1 < count || !rising || rows.front() < 1 || rows.back() >= options.picture.height) {
             throw UsageError("--rank-rows: expected " + std::to_string(count - 1) +
-                             " rising numbers from 1 to " + std::to_string(options.picture.height - 1) +
-                             " for " + std::to_string(count) + " ranks");
+                             " or more rising numbers from 1 to " +
+                             std::to_string(options.picture.height - 1) + " for " + std::to_string(count) +
+                             " ranks");
         }
     }
     if (count == 1) return;
@@ -124,36 +125,41 @@ CellScene RankRun::share_scene(const std::function<CellScene()>& read) {
 
 RankExchange& RankRun::exchange(const CellScene& scene, const RenderOptions& options) {
     const PictureSettings& settings = options.picture;
-    std::vector<int> rows = even_rank_rows(session_->count(), scene.frame.height);
-    std::copy(options.rank_rows.begin(), options.rank_rows.end(), rows.begin() + 1);
+    std::vector<int> bands = {0};
+    bands.insert(bands.end(), options.rank_rows.begin(), options.rank_rows.end());
+    bands.push_back(scene.frame.height);
+    if (options.rank_rows.empty()) bands = even_bands(session_->count(), scene.frame.height);
     const bool beyond = std::any_of(scene.beyond.begin(), scene.beyond.end(), [](bool b) { return b; });
     const bool exterior =
         beyond && settings.exterior == ExteriorMode::host && settings.stage == RunStage::trace;
-    exchange_ = std::make_unique<RankExchange>(*session_, std::move(rows), exterior);
+    exchange_ = std::make_unique<RankExchange>(*session_, std::move(bands), exterior);
     return *exchange_;
 }
 
-std::string RankRun::gather_text(const std::string& mine) {
+std::vector<std::string> RankRun::gather_rows(const std::vector<std::string>& mine) {
     ByteWriter bytes;
-    bytes.put(mine);
-    std::string all;
-    for (const Bytes& theirs : session_->gather(bytes.take())) all += ByteReader(theirs).get_text();
+    for (const std::string& row : mine) bytes.put(row);
+    RankReaders readers(*exchange_, session_->gather(bytes.take()));
+    std::vector<std::string> all;
+    if (readers.empty()) return all;
+    const int height = exchange_->first_row(exchange_->bands());
+    for (int y = 0; y < height; ++y) all.push_back(readers.of_row(y).get_text());
     return all;
 }
 
 Json RankRun::report(Machine& machine, std::uint64_t memory_bytes) {
     struct Mine {
-        int first;
-        int end;
+        std::uint64_t rows;
         std::uint64_t hops;
         std::uint64_t memory;
         RankExchange::Statistics meetings;
     };
     const Counters& c = machine.environment().counters;
-    const ArrayShare& share = exchange_->share();
     ByteWriter bytes;
-    bytes.put(Mine{share.first, share.end, c.load_hops + c.rays.ray_hops + c.rays.return_hops, memory_bytes,
+    bytes.put(Mine{exchange_->share().rows().size(), c.load_hops + c.rays.ray_hops + c.rays.return_hops, memory_bytes,
                    exchange_->statistics()});
+    std::vector<int> bands;
+    for (int band = 0; band < exchange_->bands(); ++band) bands.push_back(exchange_->first_row(band));
     Json json;
     for (const Bytes& theirs : session_->gather(bytes.take())) {
         const auto rank = ByteReader(theirs).get<Mine>();
@@ -161,10 +167,10 @@ Json RankRun::report(Machine& machine, std::uint64_t memory_bytes) {
             json = {{"count", session_->count()},
                     {"meetings", rank.meetings.meetings},
                     {"second_rounds", rank.meetings.second_rounds},
+                    {"bands", bands},
                     {"each", Json::array()}};
         }
-        json["each"].push_back({{"first_row", rank.first},
-                                {"rows", rank.end - rank.first},
+        json["each"].push_back({{"rows", rank.rows},
                                 {"hops", rank.hops},
                                 {"bytes_sent", rank.meetings.bytes},
                                 {"seconds_waited", rank.meetings.waited},

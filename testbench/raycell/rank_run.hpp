@@ -32,8 +32,8 @@ class RankRun {
     CellScene share_scene(const std::function<CellScene()>& read);
     /// For the machine; once.
     RankExchange& exchange(const CellScene& scene, const RenderOptions& options);
-    /// Rank 0 alone gets all ranks' text, in the order of ranks.
-    std::string gather_text(const std::string& mine);
+    /// Of a text for each of its rows, from the top down, rank 0 alone gets those of the whole array's.
+    std::vector<std::string> gather_rows(const std::vector<std::string>& mine);
     /// `ranks` of the report, on rank 0: rows, hops, bytes and seconds of each. `machine` has run.
     nlohmann::ordered_json report(Machine& machine, std::uint64_t memory_bytes);
     /// All is written: lets the others go.

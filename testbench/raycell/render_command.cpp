@@ -115,9 +115,11 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     if (options.probes.on_deadlock && run.result.verdict == Verdict::deadlock) {
         run.deadlocked = deadlocked_cells(run.result, machine);
     }
-    run.cells_csv = cells_csv(machine, run.result);
+    std::vector<std::string> rows = cells_csv_rows(machine, run.result);
+    if (ranks) rows = ranks->gather_rows(rows);
+    run.cells_csv = cells_csv_header();
+    for (const std::string& row : rows) run.cells_csv += row;
     if (ranks) {
-        run.cells_csv = ranks->gather_text(run.cells_csv);
         run.ranks = ranks->report(machine, peak_memory_bytes());
     }
     return run;

@@ -90,14 +90,20 @@ TEST(Ranks, MakeTheSameRunWithRowsCutAnywhere) {
     const fs::path scene = own_scene("cornell.nff");
     const Words words = {"--cells", "16x16", "--ray-store", "2"};
     ASSERT_EQ(workshop.run(render(scene, "1", words)).exit_code, 0);
-    const Finished finished = workshop.run_program(
-        mpirun, by_ranks(4, joined(render(scene, "4", words), {"--rank-rows", "1,11,12"})));
-    ASSERT_EQ(finished.exit_code, 0) << finished.err;
-    EXPECT_EQ(comparable(workshop, "4"), comparable(workshop, "1"));
-    std::vector<int> rows;
-    const Json report = Json::parse(read_text(workshop.result("4.json")));
-    for (const Json& rank : report.at("ranks").at("each")) rows.push_back(rank.at("rows"));
-    EXPECT_EQ(rows, (std::vector<int>{1, 10, 1, 4}));
+    const auto rows_of = [&](int ranks, const std::string& cuts) {
+        const Finished finished = workshop.run_program(
+            mpirun, by_ranks(ranks, joined(render(scene, "n", words), {"--rank-rows", cuts})));
+        EXPECT_EQ(finished.exit_code, 0) << finished.err;
+        EXPECT_EQ(comparable(workshop, "n"), comparable(workshop, "1"));
+        EXPECT_EQ(read_text(workshop.result("n.cells.csv")), read_text(workshop.result("1.cells.csv")));
+        std::vector<int> rows;
+        const Json report = Json::parse(read_text(workshop.result("n.json")));
+        for (const Json& rank : report.at("ranks").at("each")) rows.push_back(rank.at("rows"));
+        return rows;
+    };
+    EXPECT_EQ(rows_of(4, "1,11,12"), (std::vector<int>{1, 10, 1, 4}));
+    EXPECT_EQ(rows_of(2, "1,3,4,5,12"), (std::vector<int>{1 + 1 + 7, 2 + 1 + 4}));
+    EXPECT_EQ(rows_of(3, "2,3,4,10,15"), (std::vector<int>{2 + 6, 1 + 5, 1 + 1}));
 }
 
 TEST(Ranks, MakeTheSameRunOfAPublicScene) {
@@ -274,10 +280,11 @@ TEST(Ranks, RefuseRowsThatDoNotFit) {
         EXPECT_TRUE(contains(finished.err, "--rank-rows: expected " + expected)) << finished.err;
         EXPECT_TRUE(workshop.results().empty());
     };
-    refuses("0", 2, "1 rising numbers from 1 to 7 for 2 ranks");
-    refuses("8", 2, "1 rising numbers from 1 to 7 for 2 ranks");
-    refuses("3,3", 3, "2 rising numbers from 1 to 7 for 3 ranks");
-    refuses("3", 1, "0 rising numbers from 1 to 7 for 1 ranks");
+    refuses("0", 2, "1 or more rising numbers from 1 to 7 for 2 ranks");
+    refuses("8", 2, "1 or more rising numbers from 1 to 7 for 2 ranks");
+    refuses("3,3", 3, "2 or more rising numbers from 1 to 7 for 3 ranks");
+    refuses("3", 3, "2 or more rising numbers from 1 to 7 for 3 ranks");
+    refuses("3", 1, "several ranks, started by mpirun");
 }
 
 TEST(Ranks, SayOnceWhatTheyRefuse) {
