@@ -124,7 +124,11 @@ void Cell::remove_from(std::size_t place) {
         Link& link = *in_[std::size_t(input.side)];
         const Cycle now = env_.scheduler.now();
         pending_ &= ~link.pop_at(input.place, now);
-        if (link.occupancy_at(input.place) > 0) want(now + 1);
+        if (link.occupancy_at(input.place) == 0) return;
+        want(now + 1);
+        // An answer that stood behind the ray may have waited for longer than anybody has.
+        if (env_.classes.count == 1)
+            look_for_overdue_ = std::min(look_for_overdue_, (now / epoch + 1) * epoch);
         return;
     }
     if (place == ray_input_count_) {
@@ -459,44 +463,6 @@ bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, cons
     }
     remove_from(place);
     env_.pools.rays.give_back(&packet);
-    return true;
-}
-
-bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
-    const std::uint32_t object = store_.voxels[packet.visit.hit.voxel].object;
-    if (!may_wait(env_.context, packet.ray, object)) {
-        if (shading_.job != Shading::Job::idle || slot_complete()) {
-            cause_ = Stall::shading;
-            return false;
-        }
-        remove_from(place);
-        begin_direct(packet, now);
-        return true;
-    }
-    if (store_port_ == now) {
-        want(now + 1);
-        cause_ = Stall::store_port;
-        return false;
-    }
-    const auto index = ray_store_.allocate(packet.ray.generation);
-    if (!index) {
-        if (env_.machine.recovery == Recovery::none) {
-            cause_ = Stall::no_slot;
-            return false;
-        }
-        return end_ray(packet, place, Answer::Kind::postponed, dvec3(0), now);
-    }
-    // Before the slot is filled: a child that hits its own cell comes from a slot of this same store.
-    remove_from(place);
-    store_port_ = now;
-    Slot& slot = ray_store_[*index];
-    slot.state = Slot::State::to_set_up;
-    slot.packet = &packet;
-    slot.since = slot.changed = now;
-    slot.wait = {now, Stall::shading};
-    slot_changed();
-    ++env_.counters.slots_used;
-    record(now, CellEvent::accept, std::uint32_t(packet.ray.id), packet.ray.id, *index);
     return true;
 }
 

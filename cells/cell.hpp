@@ -154,7 +154,6 @@ class alignas(64) Cell final : public Client {
     bool forward(RayPacket& packet, std::size_t place, Cycle now);
     /// What a ray does that does not go on to a neighbour.
     bool finish_ray(RayPacket& packet, std::size_t place, Cycle now);
-    bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
     bool end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
     bool send_answer(const Answer& answer, Cycle now);
     HeadStall stall_of_answer(const Answer& answer, Cycle now) const;
@@ -162,6 +161,7 @@ class alignas(64) Cell final : public Client {
     // cell_overdue.cpp
     void move_overdue(Cycle now);
     // cell_shade.cpp: slots, own rays, shading unit
+    bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
     void deliver(const Answer& answer, Cycle now);
     void deliver_to_slot(const Answer& answer, Cycle now);
     void feed_children(Cycle now);

@@ -24,7 +24,7 @@ void Cell::fetch_links() const {
         in_[side]->fetch_buffer(answer_places_[side]);
     }
     // A ray will be tested: the depths that it is compared with.
-    if (pending_ & ~decided_ & ~bit_in_test()) {
+    if (occupied() & ~decided_ & ~bit_in_test()) {
         constexpr std::uint32_t most = 32;
         constexpr std::uint32_t in_line = 64 / sizeof(DepthRun);
         for (std::uint32_t i = 0; i < std::min(run_count_, most); i += in_line) fetch_line(runs_ + i);

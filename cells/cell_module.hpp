@@ -25,7 +25,12 @@ class CellModule : public sc_core::sc_module, public CellHost {
     sc_core::sc_vector<Port<LinkOut>> out;  ///< by Side
     Port<LinkIn> load_in;                   ///< from the row's distributor (first column only)
 
-    void activate(Cell&) override { wake_.notify(); }
+    /// All that run in a cycle are woken before the first of them runs: time to ask for their memory.
+    void activate(Cell& cell) override {
+        cell.fetch();
+        cell.fetch_links();
+        wake_.notify();
+    }
     Cell& cell() { return cell_; }
     const Cell& cell() const { return cell_; }
 

@@ -14,7 +14,8 @@ void Cell::move_overdue(Cycle now) {
     enum Kind { answer, reply, ray };
     std::vector<std::tuple<Cycle, Kind, std::size_t>> overdue;
     overdue_parked_ = 0;
-    // Of what is not overdue: what comes later, or from behind it in a buffer, is younger.
+    // Of what is not overdue: what comes later, or from behind it in a buffer, is younger. (But for an answer
+    // that stands behind a ray, which can be only where both have one buffer: remove_from() sees to that.)
     Cycle oldest = now;
     const auto add = [&](Cycle since, Kind kind, std::size_t index, std::uint32_t bit) {
         if (since >= began || began - since <= patience) {

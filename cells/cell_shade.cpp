@@ -202,6 +202,44 @@ bool Cell::slot_complete() const {
     return false;
 }
 
+bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
+    const std::uint32_t object = store_.voxels[packet.visit.hit.voxel].object;
+    if (!may_wait(env_.context, packet.ray, object)) {
+        if (shading_.job != Shading::Job::idle || slot_complete()) {
+            cause_ = Stall::shading;
+            return false;
+        }
+        remove_from(place);
+        begin_direct(packet, now);
+        return true;
+    }
+    if (store_port_ == now) {
+        want(now + 1);
+        cause_ = Stall::store_port;
+        return false;
+    }
+    const auto index = ray_store_.allocate(packet.ray.generation);
+    if (!index) {
+        if (env_.machine.recovery == Recovery::none) {
+            cause_ = Stall::no_slot;
+            return false;
+        }
+        return end_ray(packet, place, Answer::Kind::postponed, dvec3(0), now);
+    }
+    // Before the slot is filled: a child that hits its own cell comes from a slot of this same store.
+    remove_from(place);
+    store_port_ = now;
+    Slot& slot = ray_store_[*index];
+    slot.state = Slot::State::to_set_up;
+    slot.packet = &packet;
+    slot.since = slot.changed = now;
+    slot.wait = {now, Stall::shading};
+    slot_changed();
+    ++env_.counters.slots_used;
+    record(now, CellEvent::accept, std::uint32_t(packet.ray.id), packet.ray.id, *index);
+    return true;
+}
+
 void Cell::start_shading(Cycle now) {
     // Finish before you begin: a shaded slot is a slot free again. Oldest first among equals.
     constexpr std::uint32_t none = ~std::uint32_t(0);

@@ -69,7 +69,8 @@ struct Environment {
     /// same, of the cell that they come to: Link::fetch().
     std::array<std::array<std::uint8_t, 5>, side_count> buffer_places{};
     /// Bytes from a cell to its neighbour over each side, in an array that keeps its cells row by row: for
-    /// asking for their memory, no more. Zero where there is no array.
+    /// asking for their memory, no more: where rows above or below are another rank's, it is some other
+    /// cell's. Zero where there is no array.
     std::array<std::ptrdiff_t, side_count> neighbours{};
     /// Cycles from an answer's arrival until its cell need look at it; 0 where it may stand in a ray's way.
     int answer_routing;

@@ -131,11 +131,6 @@ std::uint64_t Link::busy_cycles() const {
 
 Link::Held Link::held(int index, int place) const { return buffer(index).at(std::uint32_t(place)); }
 
-Cycle Link::head_since(int index) const {
-    const Cycle popped = last_pop(index);
-    return popped == never ? arrival(index) : std::max(arrival(index), popped);
-}
-
 Cycle Link::last_pop(int index) const {
     const Buffer* b = find(index);
     return b ? b->last_pop : never;

@@ -86,22 +86,13 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         const Entry& entry = buffer->at(0);
         return entry.visible <= scheduler_.now() ? entry.message : Message();
     }
-    /// The same of a class that the link carries, without a copy: null if nothing has arrived.
-    const Message* head(int index) const {
-        const Buffer& b = buffer(index);
-        if (b.count == 0) return nullptr;
-        const Entry& entry = b.at(0);
-        return entry.visible <= scheduler_.now() ? &entry.message : nullptr;
-    }
     Cycle arrival(int index) const override {
         const Buffer* buffer = find(index);
         return buffer && buffer->count > 0 ? buffer->at(0).visible : never;
     }
-    /// Cycle from which on the oldest message has been both arrived and the oldest.
-    Cycle head_since(int index) const;
     void pop(int index) override;
 
-    /// The same for a sink that knows where a class's buffer stands, and need not touch the link's first line
+    /// For a sink that knows where a class's buffer stands, and need not touch the link's first line
     /// for it. Only for classes that the link carries.
     std::uint8_t place(int index) const { return places_[std::size_t(index)]; }
     const Message* head_at(std::uint8_t place, Cycle now) const {
@@ -112,6 +103,7 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     }
     /// Of a buffer that is not empty.
     Cycle arrival_at(std::uint8_t place) const { return buffer_at(place).at(0).visible; }
+    /// Cycle from which on the oldest message has been both arrived and the oldest.
     Cycle head_since_at(std::uint8_t place) const {
         const Buffer& b = buffer_at(place);
         return b.last_pop == never ? b.at(0).visible : std::max(b.at(0).visible, b.last_pop);
@@ -162,7 +154,9 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         fetch_buffer(place);
     }
     /// The buffer's alone: all that a sink touches of a link.
-    void fetch_buffer(std::size_t place) const { fetch_line(&buffers_[place]); }
+    void fetch_buffer(std::size_t place) const {
+        if (place < own_buffers) fetch_line(&buffers_[place]);
+    }
     /// And what it takes to wake the source.
     void fetch_source() const { fetch_line(this); }
     /// The place of a class's buffer in a link that carries the classes `used`.

@@ -85,6 +85,10 @@ void Scheduler::tick() {
     waiting_ -= running_.size();
     const auto far = far_.find(now_);
     if (far != far_.end()) {
+        if (running_.capacity() == 0 && !spare_.empty()) {
+            running_.swap(spare_.back());
+            spare_.pop_back();
+        }
         running_.insert(running_.end(), far->second.begin(), far->second.end());
         far_.erase(far);
     }

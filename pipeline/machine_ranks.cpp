@@ -163,7 +163,7 @@ struct Machine::FarBuffer {
     int rank;  ///< that has the source's half
     std::uint32_t number;
     std::uint32_t index;
-    int band;  ///< no_band: a place of the exterior's
+    int band;               ///< no_band: a place of the exterior's
     WaitGraph::Index node;  ///< counted from the first of the band
     static constexpr int no_band = -1;
 };

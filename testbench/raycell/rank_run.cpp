@@ -63,10 +63,9 @@ void check_ranks(const RenderOptions& options) {
             std::adjacent_find(rows.begin(), rows.end(), std::greater_equal<>()) == rows.end();
         if (count == 1) throw UsageError("--rank-rows: expected several ranks, started by mpirun");
         if (rows.size() + 1 < count || !rising || rows.front() < 1 || rows.back() >= options.picture.height) {
-            throw UsageError("--rank-rows: expected " + std::to_string(count - 1) +
-                             " or more rising numbers from 1 to " +
-                             std::to_string(options.picture.height - 1) + " for " + std::to_string(count) +
-                             " ranks");
+            throw UsageError(
+                "--rank-rows: expected " + std::to_string(count - 1) + " or more rising numbers from 1 to " +
+                std::to_string(options.picture.height - 1) + " for " + std::to_string(count) + " ranks");
         }
     }
     if (count == 1) return;
@@ -156,8 +155,8 @@ Json RankRun::report(Machine& machine, std::uint64_t memory_bytes) {
     };
     const Counters& c = machine.environment().counters;
     ByteWriter bytes;
-    bytes.put(Mine{exchange_->share().rows().size(), c.load_hops + c.rays.ray_hops + c.rays.return_hops, memory_bytes,
-                   exchange_->statistics()});
+    bytes.put(Mine{exchange_->share().rows().size(), c.load_hops + c.rays.ray_hops + c.rays.return_hops,
+                   memory_bytes, exchange_->statistics()});
     std::vector<int> bands;
     for (int band = 0; band < exchange_->bands(); ++band) bands.push_back(exchange_->first_row(band));
     Json json;
