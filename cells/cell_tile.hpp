@@ -8,6 +8,10 @@
 
 namespace raycell {
 
+/// Runs the cells of a list, each once, in the scheduler's cycle, and wakes them for the next that they want.
+/// Asks for the memory of those farther down ahead.
+void run_cells(const std::vector<Cell*>& cells, Environment& environment);
+
 /// Runs those of its cells that the scheduler's time wheel has woken; the others cost nothing. Its cells call
 /// their links directly, there are no ports.
 class CellTile : public sc_core::sc_module, public CellHost {

@@ -117,8 +117,8 @@ class Scheduler : public sc_core::sc_module {
 
     std::uint64_t activations() const { return activations_; }
 
-    /// Runs the next cycle, without SystemC's kernel; false if there was none. For measuring what the kernel
-    /// costs: clients must run at once when they are activated.
+    /// Begins the next cycle without SystemC's kernel; false if there is none. For measuring what the kernel
+    /// costs: who is activated is to be run before the next call.
     bool run_next();
 
   private:

@@ -44,17 +44,19 @@ Measured measure(const Traffic& traffic, const Granularity& granularity, const R
     return measured;
 }
 
-/// Runs a cell when it is woken, in the middle of the scheduler's own loop.
+/// What a tile does, in a plain loop.
 class BareHost : public CellHost {
   public:
-    explicit BareHost(Scheduler& scheduler) : scheduler_(scheduler) {}
-    void activate(Cell& cell) override {
-        const Cycle next = cell.step(scheduler_.now());
-        if (next != never) scheduler_.wake(cell, next);
+    void activate(Cell& cell) override { active_.push_back(&cell); }
+    void run(Environment& environment) {
+        while (environment.scheduler.run_next()) {
+            run_cells(active_, environment);
+            active_.clear();
+        }
     }
 
   private:
-    Scheduler& scheduler_;
+    std::vector<Cell*> active_;
 };
 
 }  // namespace
@@ -65,10 +67,9 @@ Measured run_array(const Traffic& traffic, const Granularity& granularity) {
 
 Measured run_bare_cells(const Traffic& traffic) {
     return measure(traffic, {}, [](Bench& bench) {
-        BareHost host(bench.scheduler);
+        BareHost host;
         for (Cell& cell : bench.array->cells()) cell.set_host(host);
-        while (bench.scheduler.run_next()) {
-        }
+        host.run(*bench.environment);
     });
 }
 

@@ -19,7 +19,7 @@ constexpr double ray_voxel = 10;      ///< for every voxel of a mean cell
 constexpr double ray_doubling = 10;   ///< for every doubling of the array above ...
 constexpr double small_array = 4096;  ///< ... so many cells
 constexpr double modules = 2.5;       ///< so many times where every cell is a module
-constexpr double rank = 0.8;          ///< of a rank's time goes into rays, the rest waits (docs/ranks.md)
+constexpr double rank = 0.85;         ///< of a rank's time goes into rays, the rest waits (docs/ranks.md)
 
 }  // namespace
 

@@ -141,7 +141,7 @@ TEST(Ranks, MakeTheSameLoading) {
 TEST(Ranks, ProveTheSameDeadlock) {
     SKIP_WITHOUT_MPI();
     expect_same(own_scene("cornell.nff"),
-                {"--cells", "30x12", "--networks", "shared", "--slots", "free", "--exterior", "none"}, 3);
+                {"--cells", "30x16", "--networks", "shared", "--slots", "free", "--exterior", "none"}, 3);
 }
 
 TEST(Ranks, CallTheSameLivelock) {
