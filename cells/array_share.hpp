@@ -1,6 +1,8 @@
 // Which rows of an array a process simulates.
 #pragma once
 
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace raycell {

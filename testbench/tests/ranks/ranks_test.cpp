@@ -56,6 +56,7 @@ void expect_same(const fs::path& scene, const Words& words, int exit_code = 0,
         SCOPED_TRACE(name + " ranks");
         const Finished finished = workshop.run_program(mpirun, by_ranks(ranks, render(scene, name, words)));
         ASSERT_EQ(finished.exit_code, exit_code) << finished.err;
+        EXPECT_EQ(finished.err, alone.err) << "what is stuck, line by line";
         const Json json = comparable(workshop, name);
         for (const auto& [key, value] : expected.items()) EXPECT_EQ(json.value(key, Json()), value) << key;
         EXPECT_EQ(json.size(), expected.size());
