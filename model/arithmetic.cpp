@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "model/tolerance.hpp"
+
 namespace raycell {
 namespace {
 
@@ -57,7 +59,8 @@ std::vector<std::pair<std::string, std::string>> Formats::names() const {
             {"loading", word(loading)}};
 }
 
-Arithmetic::Arithmetic() : hair_(1e-7), least_fresh_distance_(1e-9), default_normal_offset_(1e-8) {}
+Arithmetic::Arithmetic()
+    : hair_(exact_hair), tie_(exact_tie), least_fresh_distance_(nearest_hit), default_normal_offset_(1e-8) {}
 
 Formats::Formats(int word, Rounding rounding, const ArrayExtent& extent) : word_bits(word) {
     if (word < 8 || word > 32) {
@@ -81,8 +84,11 @@ Formats::Formats(int word, Rounding rounding, const ArrayExtent& extent) : word_
     field = Format(6, fraction + 2, rounding);
     accumulator = Format(4, std::min(2 * fraction, 40));
     intensity = Format(4, word - 4, rounding);
-    feature = Format(3, std::min(word, 12) - 2);
-    ior = Format(3, std::min(word, 16) - 2);
+    // The paper's widths up to its own word of 20 bits; beyond, they must not be what limits the picture.
+    const int more = std::max(word - 20, 0);
+    feature = Format(3, std::min(word, 12) + more - 2);
+    ior = Format(3, std::min(word, 16) + more - 2);
+    shine_bits = 12 + more;
     loading = Format(scene_bits, word + 16 - scene_bits);
 }
 
@@ -96,6 +102,7 @@ Arithmetic::Arithmetic(const NumberSettings& settings, const ArrayExtent& extent
     const int way_bits = formats_.distance.integer_bits() - 2;
     narrow_ = std::max(formats_.depth_bits, way_bits) + 4 + (word - 2) + word <= 53;
     hair_ = 4 * formats_.unit.step();
+    tie_ = hair_;
     least_fresh_distance_ = 64 * formats_.unit.step();
     default_normal_offset_ = 8 * formats_.unit.step();
     operators_ = std::make_shared<Operators>(settings.operators, word, settings.rounding);
@@ -162,7 +169,7 @@ dvec3 Arithmetic::hold_place(const dvec3& place) const {
 
 double Arithmetic::hold_shine(double shine) const {
     if (exact_) return shine;
-    constexpr int fraction_bits = Formats::shine_bits - 5;
+    const int fraction_bits = formats_.shine_bits - Formats::shine_exponent_bits;
     const double least = scale_by(1, -8);
     if (!(shine >= least / 2)) return 0;
     const double inside = std::min(std::max(shine, least), scale_by(1, 19));

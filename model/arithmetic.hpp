@@ -41,8 +41,8 @@ struct Formats {
     Format field;        ///< Q6.(F + 2): accumulator read out before normalising
     Format accumulator;  ///< Q4.2F, 44 bits at most: a dot product of words before it is rounded
     Format intensity;    ///< word_bits, Q4: intensities, saturating at 8
-    Format feature;      ///< unsigned Q2, min(word_bits, 12) bits: colours, Kd, Ks, T
-    Format ior;          ///< unsigned Q2, min(word_bits, 16) bits: index of refraction
+    Format feature;      ///< unsigned Q2, 12 bits, longer in words of over 20: colours, Kd, Ks, T
+    Format ior;          ///< unsigned Q2, 16 bits, longer in words of over 20: index of refraction
     Format loading;      ///< word_bits + 16: polygons, trapezes, spans; guard bits for their increments
 
     /// Throws std::invalid_argument for a word length outside 8 to 32.
@@ -54,7 +54,8 @@ struct Formats {
     int depth_word_bits() const { return depth_bits + word_bits; }  ///< of a depth in a message or a voxel
     int place_bits() const { return 3 * (word_bits + 12) + exponent_bits; }
     static constexpr int exponent_bits = 6;
-    static constexpr int shine_bits = 12;  ///< a float: 7 fraction bits, 5 of exponent from 2^-8; 0 is none
+    static constexpr int shine_exponent_bits = 5;  ///< from 2^-8; 0 is none
+    int shine_bits = 12;  ///< a float: exponent and the fraction's bits, 7 or more in words of over 20
 
     /// The formats by name, as "Q2.18"; unsigned ones as "UQ2.10".
     std::vector<std::pair<std::string, std::string>> names() const;
@@ -113,6 +114,8 @@ class Arithmetic {
     /// Distances below this are rounding, not geometry (cells): points so far outside an edge, or behind the
     /// end of a cell, count as inside, so that neighbours leave no crack.
     double hair() const { return hair_; }
+    /// Surfaces met at distances that differ by no more are met at the same: the lower polygon id counts.
+    double tie() const { return tie_; }
     /// A ray that meets a neighbour of the polygon it leaves nearer than this met it at their shared edge.
     double least_fresh_distance() const { return least_fresh_distance_; }
     /// What a negative PictureSettings::normal_offset stands for, cells.
@@ -133,6 +136,7 @@ class Arithmetic {
     bool exact_ = true;
     bool narrow_ = true;  ///< every sum of products fits a double's 53 bits
     double hair_;
+    double tie_;
     double least_fresh_distance_;
     double default_normal_offset_;
     Formats formats_;

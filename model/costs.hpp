@@ -18,9 +18,10 @@ struct OperatorSettings {
     Iteration reciprocal = Iteration::newton;
     Iteration root = Iteration::newton;
     PowerMethod power = PowerMethod::tables;
-    int reciprocal_table = 64;  ///< entries, a power of two from 4 to 4096
-    int root_table = 64;        ///< the same
-    int power_table = 32;       ///< the same, of each of the two tables
+    /// Entries, powers of two from 4 to 4096; 0: what the word length needs (table_sizes), at 20 bits 64, 64, 32.
+    int reciprocal_table = 0;
+    int root_table = 0;
+    int power_table = 0;  ///< of each of the two tables
 };
 
 /// All values are cycles. Override from the command line or the configuration: --cost NAME=CYCLES.

@@ -7,14 +7,6 @@ namespace raycell {
 
 namespace {
 
-bool fits(const Format& f, const NormalField& field) {
-    double largest = 0;
-    for (const dvec3& v : {field.base, field.du, field.dv}) {
-        largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    }
-    return largest < f.most();
-}
-
 /// Rounds a polygon to loading words.
 void hold(Polygon& polygon, const Arithmetic& arithmetic) {
     const Format& word = arithmetic.formats().loading;
@@ -27,7 +19,9 @@ void hold(Polygon& polygon, const Arithmetic& arithmetic) {
     polygon.slack = arithmetic.hold(word, polygon.slack * 2 + 4.5 * word.step());
     polygon.plane = hold_plane(polygon.plane, polygon.drop, centre, word, word);
     const dvec2 middle = project(centre, polygon.drop);
-    if (!fits(word, polygon.normal)) polygon.normal = {polygon.normal.at(middle), {0, 0, 0}, {0, 0, 0}};
+    // An eighth of the range: the field's value at another cell may be larger than that at the origin.
+    const double most = scale_by(1, word.integer_bits() - 4);
+    polygon.normal = fill_words(polygon.normal, middle, most, 1024 * word.step());
     polygon.normal = hold_field(polygon.normal, middle, word, word);
 }
 

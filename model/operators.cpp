@@ -12,8 +12,8 @@ namespace {
 
 using Word = std::uint64_t;
 
-constexpr int significand_bits = 52;  // of a double, without the leading 1
-constexpr int exponent_bits = 8;      // fraction bits of an exponent of power
+constexpr int significand_bits = 52;      // of a double, without the leading 1
+constexpr int schlick_exponent_bits = 8;  // fraction bits of an exponent, where the method is coarse anyway
 constexpr int most_exponent_bits = 19;
 constexpr Word most_octaves = 32;  // between 1 and the least base that a logarithm can hold
 constexpr int top_exponent = 127;  // of a result
@@ -83,29 +83,44 @@ Operators::Table Operators::tabulate(int size, int argument_bits, Curve curve) {
     return table;
 }
 
+TableSizes table_sizes(const OperatorSettings& settings, int word_bits) {
+    const auto size = [](int asked, int first, int steps) {
+        return asked != 0 ? asked : first << std::max(steps, 0);
+    };
+    // A Newton step doubles the bits of a table: 14 of 64 lines for 1/x, 12 for 1/sqrt, and two more of twice
+    // as many.
+    return {size(settings.reciprocal_table, 64, (word_bits - 25) / 4),
+            size(settings.root_table, 64, (word_bits - 21) / 4),
+            size(settings.power_table, 32, (word_bits - 19) / 2)};
+}
+
 Operators::Operators(const OperatorSettings& settings, int word_bits, Rounding rounding)
     : settings_(settings),
       fraction_bits_(checked_bits(word_bits) - 1),
       nearest_(rounding == Rounding::nearest),
+      exponent_bits_(settings.power == PowerMethod::schlick
+                         ? schlick_exponent_bits
+                         : std::max(schlick_exponent_bits, word_bits - 12)),
       power_word_(2, word_bits - 2, rounding),
-      exponent_word_(most_exponent_bits + 2, exponent_bits, rounding) {
-    check_table("reciprocal table", settings.reciprocal_table);
-    check_table("root table", settings.root_table);
-    check_table("power table", settings.power_table);
+      exponent_word_(most_exponent_bits + 2, exponent_bits_, rounding) {
+    const TableSizes sizes = table_sizes(settings, word_bits);
+    check_table("reciprocal table", sizes.reciprocal);
+    check_table("root table", sizes.root);
+    check_table("power table", sizes.power);
     const int f = fraction_bits_;
     const Word one = Word(1) << f;
-    reciprocals_ = tabulate(settings.reciprocal_table, f,
+    reciprocals_ = tabulate(sizes.reciprocal, f,
                             [&](Word i, Word n) { return exact_reciprocal(one + i * (one / n), f, true); });
     for (const int octave : {0, 1}) {
         const Word first = octave == 0 ? one / 2 : one;
-        roots_[octave] = tabulate(settings.root_table / 2, f - 1 + octave, [&](Word i, Word n) {
+        roots_[octave] = tabulate(sizes.root / 2, f - 1 + octave, [&](Word i, Word n) {
             return exact_root(first + i * (first / n), f, true);
         });
     }
-    logarithms_ = tabulate(settings.power_table, f, [&](Word i, Word n) {
+    logarithms_ = tabulate(sizes.power, f, [&](Word i, Word n) {
         return Word(std::llround(std::log2(1 + double(i) / double(n)) * double(one)));
     });
-    exponentials_ = tabulate(settings.power_table, f, [&](Word i, Word n) {
+    exponentials_ = tabulate(sizes.power, f, [&](Word i, Word n) {
         return Word(std::llround(std::exp2(double(i) / double(n)) * double(one)));
     });
 }
@@ -187,7 +202,9 @@ inline Word Operators::tables_power(Word m, int exponent, Word power) const {
     const Word logarithm = line_value(logarithms_, m - (Word(1) << f));
     const Word octaves = std::min((Word(-exponent) << f) - logarithm, most_octaves << f);
     // The result is 2^-product; its whole part is a shift, and what is missing to a whole one is 2^fraction.
-    const Word product = round_off(octaves * power, exponent_bits);
+    // 64 octaves and more leave nothing of a word; of long words the product would not fit into 64 bits.
+    if ((unsigned __int128)octaves * power >> (f + exponent_bits_ + 6)) return 0;
+    const Word product = round_off(octaves * power, exponent_bits_);
     const Word one = Word(1) << f;
     const Word shift = (product + one - 1) >> f;
     const Word mantissa = line_value(exponentials_, shift * one - product);
@@ -198,11 +215,11 @@ inline Word Operators::tables_power(Word m, int exponent, Word power) const {
 inline Word Operators::schlick_power(Word base, Word power) const {
     const int f = fraction_bits_;
     const Word one = Word(1) << f;
-    const Word divisor = power * (one - base) + (base << exponent_bits);
+    const Word divisor = power * (one - base) + (base << schlick_exponent_bits);
     // Up to 59 bits, beyond what a double holds; 1/256 at least, so it has no fewer bits than a mantissa.
     const int top = 63 - __builtin_clzll(divisor);
     Word m = round_off(divisor, top - f);
-    int exponent = top - (f + exponent_bits);
+    int exponent = top - (f + schlick_exponent_bits);
     if (m >> (f + 1)) {
         m >>= 1;
         ++exponent;
@@ -215,7 +232,7 @@ double Operators::power(double base, double exponent) const {
     const int f = fraction_bits_;
     const double most = scale_by(1, most_exponent_bits);
     const double held = exponent_word_.hold(std::max(std::min(exponent, most), 0.0));
-    const Word power = Word(scale_by(held, exponent_bits));
+    const Word power = Word(scale_by(held, exponent_bits_));
     if (power == 0 || base >= 1) return 1;
     if (base <= 0) return 0;
     const auto [significand, base_exponent] = split(base);

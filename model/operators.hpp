@@ -10,6 +10,14 @@
 
 namespace raycell {
 
+/// Lines of the tables: those asked for, or what the word length needs. Power has two of its size.
+struct TableSizes {
+    int reciprocal;
+    int root;
+    int power;
+};
+TableSizes table_sizes(const OperatorSettings& settings, int word_bits);
+
 /// The operators of one word length W. Arguments and results are mantissas of W bits, unsigned, 1.(W - 1),
 /// with a sign and an exponent beside them: normalised by a leading-zero count, so their accuracy is relative
 /// and does not depend on magnitude. An argument is first rounded to such a mantissa by the rounding mode,
@@ -32,8 +40,8 @@ class Operators {
     /// behind the 1 select one. For x < 2^-254, 0 and less too: as the reciprocal of 0.
     double inverse_root(double x) const;
     /// base^exponent as a word Q2.(W - 2), 0 to 1. The base is from 0 to 1, beyond counts as the nearer end;
-    /// so does the exponent beyond 0 to 2^19, which is held with 8 fraction bits. 0^0 = 1, as in Phong's term
-    /// with Shine 0. Least base that `tables` tells from smaller ones: 2^-32.
+    /// so does the exponent beyond 0 to 2^19, which is held with W - 12 fraction bits, 8 at least (`schlick`:
+    /// 8). 0^0 = 1, as in Phong's term with Shine 0. Least base that `tables` tells from smaller ones: 2^-32.
     double power(double base, double exponent) const;
 
     const OperatorSettings& settings() const { return settings_; }
@@ -64,6 +72,7 @@ class Operators {
     OperatorSettings settings_;
     int fraction_bits_;  ///< of a mantissa: W - 1
     bool nearest_;
+    int exponent_bits_;  ///< fraction bits of power's exponent
     Format power_word_;
     Format exponent_word_;  ///< holds exponents of power
     Table reciprocals_;     ///< 1/m over [1, 2)

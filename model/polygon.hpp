@@ -68,6 +68,17 @@ Plane hold_plane(const Plane& plane, int drop, const dvec3& anchor, const Format
 NormalField hold_field(const NormalField& field, const dvec2& anchor, const Format& gradient,
                        const Format& base);
 
+/// A field for words that hold less than `most`, a power of two. Only its direction counts, so it is scaled
+/// by a power of two until its largest component lies in [most / 2, most). A field that turns so fast that
+/// less than `least` of it would be left at `anchor` belongs to a polygon that words can't tell from a point:
+/// its value there is kept, without gradients, and `single` is set.
+NormalField fill_words(const NormalField& field, const dvec2& anchor, double most, double least,
+                       bool* single = nullptr);
+
+/// Least part of a field that words of this format must be left with: below it, a direction is off by over
+/// 1/64.
+inline double least_normal(const Format& format) { return 64 * format.step(); }
+
 /// Sum of the edges' cross products (Newell): twice the area, along the normal; sound for concave outlines.
 dvec3 newell(const std::vector<dvec3>& vertices);
 

@@ -133,12 +133,8 @@ void set_functions(Voxel& voxel, const Span& span, Normals normals, const Arithm
     NormalField field = voxel.normal;
     field.base = field.at(project(shift, voxel.drop));
     const dvec2 anchor = project(voxel.point - shift, voxel.drop);
-    double largest = 0;
-    for (const dvec3& v : {field.base, field.du, field.dv}) {
-        largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    }
-    // Normals that turn faster than the words can say belong to a polygon much smaller than a cell.
-    if (largest > formats.normal.most()) field = {field.at(anchor), {0, 0, 0}, {0, 0, 0}};
+    const double most = scale_by(1, formats.normal.integer_bits() - 1);
+    field = fill_words(field, anchor, most, least_normal(formats.normal));
     voxel.normal = hold_field(field, anchor, formats.normal, formats.normal);
 }
 
@@ -315,7 +311,7 @@ void StorageCounts::add(const CellStore& store, const VoxelBits& each) {
 }
 
 int feature_bits(const Formats& formats) {
-    return 6 * formats.feature_bits() + Formats::shine_bits + formats.ior_bits() + 1;
+    return 6 * formats.feature_bits() + formats.shine_bits + formats.ior_bits() + 1;
 }
 
 VoxelBits voxel_bits(const PictureSettings& settings, const Formats& formats, std::size_t sources) {

@@ -74,7 +74,7 @@ std::string object_text(const Words& words, const Material& m) {
     const Formats& f = words.formats();
     return vector_text(words, f.feature, m.colour) + " " + words.word(f.feature, m.diffuse) + " " +
            words.word(f.feature, m.specular) + " " + words.word(f.feature, m.transmit) + " " +
-           words.floating(Formats::shine_bits - 4, m.shine) + " " + words.word(f.ior, m.ior) + " " +
+           words.floating(f.shine_bits - 4, m.shine) + " " + words.word(f.ior, m.ior) + " " +
            (m.mirror ? "1" : "0");
 }
 
@@ -85,7 +85,7 @@ Material read_object(Line& line, const Words& words) {
     m.diffuse = line.word(words, f.feature);
     m.specular = line.word(words, f.feature);
     m.transmit = line.word(words, f.feature);
-    m.shine = line.floating(words, Formats::shine_bits - 4);
+    m.shine = line.floating(words, f.shine_bits - 4);
     m.ior = line.word(words, f.ior);
     m.mirror = line.whole(1) == 1;
     return m;

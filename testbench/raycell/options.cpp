@@ -323,9 +323,10 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
                   {"schlick", PowerMethod::schlick},
                   {"rounded", PowerMethod::rounded}},
                  "Phong's power: by log2 and exp2 tables, Schlick's fraction, or digit by digit");
-    table.number("reciprocal-table", o.reciprocal_table, 4, 4096, "its entries, a power of two");
-    table.number("root-table", o.root_table, 4, 4096, "its entries, a power of two");
-    table.number("power-table", o.power_table, 4, 4096, "entries of each of its two tables, a power of two");
+    table.number("reciprocal-table", o.reciprocal_table, 0, 4096,
+                 "its entries, a power of two from 4; 0: what the word length needs, 64 at 20 bits");
+    table.number("root-table", o.root_table, 0, 4096, "the same; 0: 64 at 20 bits");
+    table.number("power-table", o.power_table, 0, 4096, "the same, of each of its two tables; 0: 32 at 20 bits");
     add_communication_options(table, m);
     table.number("normal-offset", p.normal_offset, -1.0, 1.0,
                  "start of secondary rays off their polygon, cells; negative: what suits the arithmetic");

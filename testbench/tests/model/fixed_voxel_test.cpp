@@ -255,46 +255,70 @@ TEST(HeldVoxels, KeepTheirEdgesWhereMergedPiecesBeginNearer) {
     }
 }
 
-TEST(HeldVoxels, OfPolygonsWhoseNormalsTurnTooFastHaveOneNormal) {
+/// A triangle so many cells wide over which the normal turns by a right angle; the only one in its cell.
+CellScene turning(double width) {
     CellScene scene = shapes::empty_cube(4, 4, 8, 64);
-    // A hundredth of a cell over which the normal turns by a right angle: 100 and more per cell.
-    scene.polygons.push_back(make_triangle(0, 0,
-                                           {dvec3(1.5, 1.5, 4), dvec3(1.51, 1.5, 4), dvec3(1.5, 1.51, 4)},
+    const dvec3 at(1.53, 1.47, 4.2);
+    scene.polygons.push_back(make_triangle(0, 0, {at, at + dvec3(width, 0, 0), at + dvec3(0, width, 0)},
                                            {dvec3(0, 0, -1), dvec3(1, 0, 0), dvec3(0, 1, 0)}));
-    scene.polygons.push_back(make_triangle(1, 0, {dvec3(2.1, 2.1, 4), dvec3(2.9, 2.1, 4), dvec3(2.1, 2.9, 4)},
-                                           {dvec3(0, 0, -1), dvec3(1, 0, 0), dvec3(0, 1, 0)}));
-    for (const int bits : {8, 16, 20, 32}) {
-        PictureSettings settings = shapes::settings_for(scene, HitTest::edge, Numbers::fixed);
-        settings.numbers.word_bits = bits;
-        const Context context(scene, settings);
-        const auto cells = load_array(scene, settings, context.arithmetic);
-        ASSERT_EQ(cells[1 * 4 + 1].voxels.size(), 1u) << bits;
-        const NormalField& fast = cells[1 * 4 + 1].voxels[0].normal;
-        EXPECT_EQ(fast.du, dvec3(0)) << bits;
-        EXPECT_EQ(fast.dv, dvec3(0)) << bits;
-        const dvec3 middle = glm::normalize(dvec3(1, 1, -1));
-        EXPECT_GT(glm::dot(glm::normalize(fast.base), middle), 0.9) << bits;
-        ASSERT_EQ(cells[2 * 4 + 2].voxels.size(), 1u) << bits;
-        EXPECT_NE(cells[2 * 4 + 2].voxels[0].normal.du, dvec3(0)) << bits;
+    return scene;
+}
+
+/// The voxel's field of normals, and how far its direction is from the polygon's at the triangle's corners.
+double turning_error(const CellScene& scene, int word_bits, NormalField& field) {
+    PictureSettings settings = shapes::settings_for(scene, HitTest::edge, Numbers::fixed);
+    settings.numbers.word_bits = word_bits;
+    const Context context(scene, settings);
+    const auto cells = load_array(scene, settings, context.arithmetic);
+    if (cells[1 * 4 + 1].voxels.size() != 1) return 1e300;
+    field = cells[1 * 4 + 1].voxels[0].normal;
+    const Polygon& polygon = scene.polygons[0];
+    double error = 0;
+    for (const dvec3& corner : polygon.vertices) {
+        const dvec3 exact = polygon.normal.at(project(corner, polygon.drop));
+        const dvec3 held = field.at(project(corner - dvec3(1, 1, 0), polygon.drop));
+        error = std::max(error, glm::length(glm::normalize(held) - glm::normalize(exact)));
+    }
+    return error;
+}
+
+TEST(HeldVoxels, OfPolygonsMuchSmallerThanACellKeepTheirNormalsAsNearAsTheirPlace) {
+    for (const double width : {0.3141, 0.0577, 0.01234, 0.00123}) {
+        const CellScene scene = turning(width);
+        NormalField field;
+        for (const int bits : {20, 24, 28, 32}) {
+            const double error = turning_error(scene, bits, field);
+            // The triangle's place in words, and what its normal turns over one last bit of it.
+            EXPECT_LT(error, 16 * std::ldexp(1, 2 - bits) / width) << width << ", " << bits << " bits";
+            EXPECT_NE(field.du, dvec3(0));
+        }
     }
 }
 
-TEST(HeldVoxels, HaveOneNormalTooWhereOnlyTheVoxelsOwnWordsAreTooShort) {
-    // A twentieth of a cell: 20 per cell, which loading words of a cube this deep hold and Q4 does not.
-    CellScene scene = shapes::empty_cube(4, 4, 64, 64);
-    scene.polygons.push_back(make_triangle(0, 0,
-                                           {dvec3(1.5, 1.5, 4), dvec3(1.55, 1.5, 4), dvec3(1.5, 1.55, 4)},
-                                           {dvec3(0, 0, -1), dvec3(1, 0, 0), dvec3(0, 1, 0)}));
-    const PictureSettings settings = shapes::settings_for(scene, HitTest::edge, Numbers::fixed);
-    const Context context(scene, settings);
-    ASSERT_LT(scene.polygons[0].normal.du.x, context.arithmetic.formats().loading.most());
-    ASSERT_GT(scene.polygons[0].normal.du.x, context.arithmetic.formats().normal.most());
-    const auto cells = load_array(scene, settings, context.arithmetic);
-    ASSERT_EQ(cells[1 * 4 + 1].voxels.size(), 1u);
-    const NormalField& normal = cells[1 * 4 + 1].voxels[0].normal;
-    EXPECT_EQ(normal.du, dvec3(0));
-    EXPECT_EQ(normal.dv, dvec3(0));
-    EXPECT_GT(glm::dot(glm::normalize(normal.base), glm::normalize(dvec3(1, 1, -1))), 0.9);
+TEST(HeldVoxels, OfPolygonsThatWordsCantTellFromAPointHaveOneNormal) {
+    for (const int bits : {8, 16, 20, 32}) {
+        const CellScene scene = turning(std::ldexp(1, -bits - 1));
+        NormalField field;
+        turning_error(scene, bits, field);
+        EXPECT_EQ(field.du, dvec3(0)) << bits;
+        EXPECT_EQ(field.dv, dvec3(0)) << bits;
+        const dvec3 middle = glm::normalize(dvec3(1, 1, -1));
+        EXPECT_GT(glm::dot(glm::normalize(field.base), middle), 0.9) << bits;
+    }
+}
+
+TEST(HeldVoxels, FillTheirWordsWithTheNormalField) {
+    for (const double width : {0.4, 0.02}) {
+        const CellScene scene = turning(width);
+        NormalField field;
+        turning_error(scene, 20, field);
+        double largest = 0;
+        for (const dvec3& v : {field.base, field.du, field.dv}) {
+            largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+        }
+        EXPECT_GE(largest, 4 - 1e-3);
+        EXPECT_LT(largest, 8);
+    }
 }
 
 TEST(HeldVoxels, HaveARunEvenWhereLevelsAreFinerThanTheLastBit) {

@@ -66,7 +66,12 @@ void for_words(double first, double last, int fraction_bits, Visit visit) {
 class Reference {
   public:
     Reference(const OperatorSettings& settings, int word_bits, Rounding rounding)
-        : settings_(settings), f_(word_bits - 1), one_(two_to(f_)), nearest_(rounding == Rounding::nearest) {}
+        : settings_(settings),
+          sizes_(table_sizes(settings, word_bits)),
+          f_(word_bits - 1),
+          one_(two_to(f_)),
+          per_one_(settings.power == PowerMethod::schlick || word_bits <= 20 ? 256 : two_to(word_bits - 12)),
+          nearest_(rounding == Rounding::nearest) {}
 
     double reciprocal(double x) const {
         const Argument a = argument(std::abs(x), 2);
@@ -79,7 +84,7 @@ class Reference {
     }
 
     double power(double base, double exponent) const {
-        const auto scaled = Integer(whole(256 * std::min(exponent, 524288.0)));
+        const auto scaled = Integer(whole(double(per_one_) * std::min(exponent, 524288.0)));
         if (scaled == 0 || base >= 1) return 1;
         if (base == 0) return 0;
         const Integer word = settings_.power == PowerMethod::tables ? by_tables(argument(base, 2), scaled)
@@ -138,7 +143,7 @@ class Reference {
     Integer reciprocal_of(Integer m) const {
         const auto exact = [&](Integer x) { return nearest(one_ * one_, x); };
         if (settings_.reciprocal == Iteration::rounded) return rounded(one_ * one_, m);
-        const Integer lines = std::min(Integer(settings_.reciprocal_table), one_);
+        const Integer lines = std::min(Integer(sizes_.reciprocal), one_);
         const Integer width = one_ / lines;
         const Integer start = m - (m - one_) % width;
         const Integer r = between(exact(start), exact(start + width), m - start, width);
@@ -160,7 +165,7 @@ class Reference {
         const auto exact = [&](Integer x) { return (digits(x) + 1) / 2; };
         // Half of the lines over [1, 2), half over [2, 4); 1 is one_ / 2 here.
         const Integer first = m < one_ ? one_ / 2 : one_;
-        const Integer lines = std::min(Integer(settings_.root_table / 2), first);
+        const Integer lines = std::min(Integer(sizes_.root / 2), first);
         const Integer width = first / lines;
         const Integer start = m - (m - first) % width;
         const Integer r = between(exact(start), exact(start + width), m - start, width);
@@ -173,7 +178,7 @@ class Reference {
         if (base.exponent >= 0) return one_ / 2;
         const auto word = [&](long double x) { return Integer(std::llround(x * (long double)(one_))); };
         const auto line = [&](Integer x, Integer range, auto curve) {
-            const Integer lines = std::min(Integer(settings_.power_table), range);
+            const Integer lines = std::min(Integer(sizes_.power), range);
             const Integer width = range / lines;
             const Integer i = x / width;
             return between(word(curve((long double)(i) / (long double)(lines))),
@@ -182,7 +187,7 @@ class Reference {
         const Integer logarithm = base.exponent * one_ + line(base.mantissa - one_, one_,
                                                               [](long double x) { return std::log2(1 + x); });
         // Rounded as the magnitude that it is in the cell.
-        const Integer product = -rounded(-std::max(logarithm, -32 * one_) * scaled, 256);
+        const Integer product = -rounded(-std::max(logarithm, -32 * one_) * scaled, per_one_);
         Integer octave = 0;
         while (octave * one_ > product && octave > -200) --octave;
         if (octave == -200) return 0;
@@ -201,8 +206,10 @@ class Reference {
     }
 
     OperatorSettings settings_;
+    TableSizes sizes_;
     int f_;
     Integer one_;
+    Integer per_one_;  ///< parts of one that an exponent is held to
     bool nearest_;
 };
 

@@ -288,8 +288,9 @@ TEST(Power, HasItsEndsInEveryMethod) {
             EXPECT_EQ(operators.power(-1, 3), 0);
             EXPECT_EQ(operators.power(0.3, 0), 1);
             EXPECT_EQ(operators.power(0.3, -5), 1);
-            EXPECT_EQ(operators.power(0.3, 0.0019), 1);  // nearest 256th: 0
-            EXPECT_EQ(operators.power(0.3, 0.0021), operators.power(0.3, 0.00390625));
+            const bool longer = word_bits > 20 && method != PowerMethod::schlick;
+            EXPECT_EQ(operators.power(0.3, 0.0019) == 1, !longer) << "nearest 256th: 0";
+            EXPECT_EQ(operators.power(0.3, 0.0021) == operators.power(0.3, 0.00390625), !longer);
             EXPECT_EQ(operators.power(1, 1024), 1);
             EXPECT_EQ(operators.power(1.5, 1024), 1);
             EXPECT_EQ(operators.power(1e300, 1e300), 1);
@@ -380,12 +381,12 @@ TEST(Operators, RefuseTablesAndWordsOfOtherSizes) {
     OperatorSettings settings;
     for (int OperatorSettings::*size : {&OperatorSettings::reciprocal_table, &OperatorSettings::root_table,
                                         &OperatorSettings::power_table}) {
-        for (const int entries : {-4, 0, 1, 2, 3, 63, 65, 4095, 8192}) {
+        for (const int entries : {-4, 1, 2, 3, 63, 65, 4095, 8192}) {
             settings = {};
             settings.*size = entries;
             EXPECT_THROW(Operators(settings, 20, Rounding::nearest), std::invalid_argument) << entries;
         }
-        for (const int entries : {4, 4096}) {
+        for (const int entries : {0, 4, 4096}) {
             settings = {};
             settings.*size = entries;
             EXPECT_NO_THROW(Operators(settings, 8, Rounding::nearest)) << entries;
