@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "model/shading.hpp"
 #include "model/tessellate.hpp"
+#include "model/visible_extent.hpp"
 
 namespace raycell {
 
@@ -24,39 +24,24 @@ Frame::PrimaryRay Frame::primary_ray(double x, double y) const {
 
 namespace {
 
-struct Extent {
-    double near = std::numeric_limits<double>::infinity();
-    double far = -std::numeric_limits<double>::infinity();
-};
+/// Room between the visible scene and the cube's front and back, cells: what faces the viewer must not lie on
+/// a face, where words can't tell inside from outside. It also covers what facets lie inside of a curved
+/// surface.
+double margin_of(const PictureSettings& settings) { return std::max(0.5, 2 * settings.chord_error); }
 
-/// Depth range, in world units along the view axis, of what the field of view takes in.
-Extent visible_extent(const Scene& scene, const Frame& axes, const PictureSettings& settings, double tan_x,
-                      double tan_y, double half_x, double half_y, double hither) {
-    Extent extent;
-    for (const Primitive& primitive : scene.primitives) {
-        // A coarse tessellation is enough here; what it may miss of a curved object is added to its range.
-        double chord = 0;
-        if (const auto* s = std::get_if<SpherePrimitive>(&primitive.shape)) chord = 0.01 * s->radius;
-        if (const auto* c = std::get_if<ConePrimitive>(&primitive.shape)) {
-            chord = 0.01 * std::max(c->base_radius, c->apex_radius);
-        }
-        for (const Polygon& polygon : tessellate(primitive, 0, axes, chord)) {
-            std::vector<dvec3> part = polygon.vertices;
-            if (settings.viewer == ViewerMode::infinity) {
-                part = clip_to_box(part, {{-half_x, -half_y, -1e300}, {half_x, half_y, 1e300}});
-            } else {
-                part = clip_half_space(part, 2, hither, 1);
-                // A little wider than the field of view, so that curved objects at its rim are seen whole.
-                const dvec3 sides[] = {{1, 0, tan_x}, {-1, 0, tan_x}, {0, 1, tan_y}, {0, -1, tan_y}};
-                for (const dvec3& side : sides) part = clip_plane(part, side, -2 * chord);
-            }
-            for (const dvec3& p : part) {
-                extent.near = std::min(extent.near, p.z - 1.5 * chord);
-                extent.far = std::max(extent.far, p.z + 1.5 * chord);
-            }
-        }
+/// What the array takes in, in the viewer's coordinates: `tan_x`, `tan_y` are its half sides at distance 1.
+std::vector<HalfSpace> field_of_view(ViewerMode viewer, double tan_x, double tan_y, double hither,
+                                     double to_target) {
+    if (viewer == ViewerMode::infinity) {
+        const double x = -tan_x * to_target;
+        const double y = -tan_y * to_target;
+        return {{{1, 0, 0}, x}, {{-1, 0, 0}, x}, {{0, 1, 0}, y}, {{0, -1, 0}, y}};
     }
-    return extent;
+    return {{{0, 0, 1}, hither},
+            {{1, 0, tan_x}, 0},
+            {{-1, 0, tan_x}, 0},
+            {{0, 1, tan_y}, 0},
+            {{0, -1, tan_y}, 0}};
 }
 
 }  // namespace
@@ -79,27 +64,22 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
     const double tan_cell = 2 * tan_half / intervals;  // a cell's width over its distance
     const double to_target = glm::length(view.at - view.from);
 
-    Frame axes = frame;  // view coordinates in world units, the eye at the origin
-    axes.corner = view.from;
-    axes.cell_width = 1;
     const double hither = std::max(view.hither, 1e-6 * to_target);
-    const double half_x = settings.width * tan_cell / 2;
-    const double half_y = settings.height * tan_cell / 2;
-    Extent extent =
-        visible_extent(scene, axes, settings, half_x, half_y, half_x * to_target, half_y * to_target, hither);
+    const std::vector<HalfSpace> field = field_of_view(settings.viewer, settings.width * tan_cell / 2,
+                                                       settings.height * tan_cell / 2, hither, to_target);
+    const ViewAxes axes{view.from, frame.right, frame.down, frame.forward};
+    Extent extent;
+    for (const Primitive& primitive : scene.primitives) extent.add(visible_extent(primitive, axes, field));
     if (!(extent.near <= extent.far)) extent = {to_target, to_target};  // nothing to see: background
-    if (!frame.viewer_at_infinity) extent.near = std::max(extent.near, hither);
-    extent.far = std::max(extent.far, extent.near);
 
-    // A hair of room at both ends: a plane that faces the viewer must not lie on the cube's own face.
-    const double range = extent.far - extent.near;
-    const double slack = 1e-3 * range + 1e-6 * std::max(std::abs(extent.near), std::abs(extent.far));
-    double near = extent.near - slack;
-    if (!frame.viewer_at_infinity) near = std::max(near, 0.999 * extent.near);
-    const double far = extent.far + slack;
-
+    const double margin = margin_of(settings);
+    double near = extent.near - margin * tan_cell * to_target;
+    // The nearer the screen, the smaller its cells. Nothing before `hither` is to be seen: a scene that is
+    // cut off there passes through the screen.
+    if (!frame.viewer_at_infinity) near = std::max(extent.near / (1 + margin * tan_cell), 0.999 * hither);
     const double distance = frame.viewer_at_infinity ? to_target : near;
     frame.cell_width = tan_cell * distance;
+    const double far = extent.far + margin * frame.cell_width;
     frame.depth = std::max((far - near) / frame.cell_width, 1.0);
     frame.corner = view.from + near * frame.forward -
                    0.5 * frame.cell_width *
