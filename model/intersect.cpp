@@ -113,12 +113,14 @@ std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, cons
     const auto meeting = meet_plane(voxel, ray, arithmetic);
     if (!meeting) return std::nullopt;
     const double t = meeting->t;
-    const double t_least = ray.fresh ? arithmetic.least_fresh_distance() : -meeting->room;
+    // Only a ray that leaves a surface has neighbours of it to pass by.
+    const bool leaves = ray.fresh && ray.leaves != no_polygon;
+    const double t_least = leaves ? arithmetic.least_fresh_distance() : -meeting->room;
     if (!(t >= t_least && t <= t_end + meeting->room)) return std::nullopt;
     // Without edges a polygon's plane runs on over its neighbours. A ray that leaves one side of a surface
     // first meets that same side of its next part: in its first cell, the other side is such an overrun.
     const bool overruns = test == HitTest::plane || test == HitTest::mask;
-    if (overruns && ray.fresh && ray.leaves != no_polygon && ray.leaves_front == (meeting->along > 0)) {
+    if (overruns && leaves && ray.leaves_front == (meeting->along > 0)) {
         return std::nullopt;
     }
     const dvec3 point = point_at(ray, t, arithmetic);
@@ -127,6 +129,16 @@ std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, cons
     if (test == HitTest::edge && !inside_pieces(store, voxel, point, arithmetic)) return std::nullopt;
     return std::max(t, 0.0);
 }
+
+namespace {
+
+/// Which of two hits counts. Voxels come in the order of their polygons, so one comparison with what is kept
+/// is enough: a later one must be nearer by more than a tie.
+bool precedes(double t, std::uint32_t polygon, double kept_t, std::uint32_t kept_polygon, double tie) {
+    return polygon < kept_polygon ? t <= kept_t + tie : t < kept_t - tie;
+}
+
+}  // namespace
 
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
                                        double level, const Arithmetic& arithmetic, Comparisons* comparisons,
@@ -149,9 +161,12 @@ std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, d
         }
         const auto t = hit_voxel(store, voxel, ray, t_end, test, level, arithmetic);
         if (!t) continue;
-        if (!best || *t < best->t || (*t == best->t && voxel.polygon < store.voxels[best->voxel].polygon)) {
+        const bool tied = best && std::abs(*t - best->t) <= arithmetic.tie();
+        if (!best ||
+            precedes(*t, voxel.polygon, best->t, store.voxels[best->voxel].polygon, arithmetic.tie())) {
             best = CellHit{*t, i};
         }
+        best->tied = best->tied || tied;
     }
     return best;
 }

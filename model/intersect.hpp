@@ -16,6 +16,7 @@ std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, cons
 struct CellHit {
     double t = 0;
     std::uint32_t voxel = 0;
+    bool tied = false;  ///< another was met at the same distance
 };
 
 /// How much a cell compared: what the traversal unit's time is made of.
@@ -25,7 +26,7 @@ struct Comparisons {
     std::uint32_t edges = 0;  ///< edge functions of these (rung `edge`)
 };
 
-/// The nearest hit in a cell; equal distances go to the lower polygon id. For shadow rays any hit will do,
+/// The nearest hit in a cell; within Arithmetic::tie() the lowest polygon id. For shadow rays any hit will do,
 /// but the nearest is found all the same: the cell has one comparison unit for both.
 /// `runs`: if not null, the depths of all `run_count` voxels of the store, which then is only looked at where
 /// the ray's own run meets one of theirs.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/tolerance.hpp"
+
 namespace raycell {
 namespace {
 
@@ -43,7 +45,9 @@ dvec3 point_at(const Side& side, int axis, double s) {
 
 class Cutter {
   public:
-    explicit Cutter(const Polygon& polygon) : polygon_(polygon), axis_(sweep_axis(polygon.vertices)) {
+    /// `shared`: what lies this near to a cell's border belongs to both cells.
+    Cutter(const Polygon& polygon, double shared)
+        : polygon_(polygon), shared_(shared), axis_(sweep_axis(polygon.vertices)) {
         dvec3 unit{0, 0, 0};
         unit[axis_] = 1;
         along_ = glm::cross(polygon.plane.n, unit);
@@ -111,7 +115,8 @@ class Cutter {
         t.plane = polygon_.plane;
         t.drop = polygon_.drop;
         t.normal = polygon_.normal;
-        t.slack[t.drop] = polygon_.slack;
+        t.slack = dvec3(shared_);
+        t.slack[t.drop] += polygon_.slack;
         const dvec3 ring[] = {point_at(open.left, axis_, open.s0), point_at(open.right, axis_, open.s0),
                               point_at(open.right, axis_, open.s1), point_at(open.left, axis_, open.s1)};
         dvec3 centre{0, 0, 0};
@@ -170,6 +175,7 @@ class Cutter {
     }
 
     const Polygon& polygon_;
+    double shared_;
     int axis_;
     dvec3 along_;
     std::vector<Open> open_;
@@ -187,7 +193,8 @@ EdgeFunction hold_edge(const EdgeFunction& edge, const dvec2& anchor, const Form
 }
 
 std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithmetic) {
-    std::vector<Trapeze> trapezes = Cutter(polygon).run();
+    // Surfaces that a ray meets at once on a border are compared in one cell, whichever it is.
+    std::vector<Trapeze> trapezes = Cutter(polygon, arithmetic.exact() ? 2 * exact_hair : 0).run();
     if (arithmetic.exact()) return trapezes;
     const Format& word = arithmetic.formats().loading;
     for (Trapeze& t : trapezes) {

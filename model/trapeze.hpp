@@ -39,7 +39,7 @@ struct Trapeze {
     int edge_count = 0;
     double top = 0;        ///< smallest y, cells
     double bottom = 0;     ///< largest y, cells
-    dvec3 slack{0, 0, 0};  ///< Polygon::slack, along the dropped axis
+    dvec3 slack{0, 0, 0};  ///< Polygon::slack, along the dropped axis; exact arithmetic: and what cells share
     /// First row of an array of `height` rows that it touches.
     int first_row(int height) const { return std::clamp(int(top - slack.y), 0, height - 1); }
     /// True when a row below `row` still has a part of it.

@@ -24,10 +24,14 @@ struct Query {
     RTCIntersectContext context;  // first, so that a pointer to it is a pointer to the query
     const ProbeRay& ray;
     std::uint32_t exclude;
-    double t_max;      ///< the nearest hit so far, or the caller's limit
+    double t_max;      ///< nothing beyond is of interest: the caller's limit, or the nearest hit and a tie
     double start = 0;  ///< Embree's ray begins at ray.at(start)
-    std::size_t index = 0;
-    bool found = false;
+    struct Hit {
+        double t;
+        std::size_t index;
+    };
+    std::vector<Hit> hits;  ///< all within a tie of the nearest, and perhaps some that no longer are
+    double nearest = infinity;
 
     Query(const ProbeRay& probe, std::uint32_t leaves, double limit)
         : ray(probe), exclude(leaves), t_max(limit) {
@@ -35,16 +39,27 @@ struct Query {
     }
     static Query& of(RTCIntersectContext* context) { return *reinterpret_cast<Query*>(context); }
 
-    /// Takes the polygon if it is met and nothing before it; true if taken.
+    /// Takes the polygon if it is met and nothing well before it; true if taken.
     bool offer(const std::vector<Polygon>& polygons, std::size_t candidate) {
         const Polygon& polygon = polygons[candidate];
         if (polygon.id == exclude) return false;
         const std::optional<double> t = ray.meet(polygon, nearest_hit, t_max);
-        if (!t || (found && *t == t_max && polygon.id > polygons[index].id)) return false;
-        t_max = *t;
-        index = candidate;
-        found = true;
+        if (!t) return false;
+        if (*t < nearest - exact_tie) hits.clear();
+        hits.push_back({*t, candidate});
+        nearest = std::min(nearest, *t);
+        t_max = std::min(t_max, nearest + exact_tie);
         return true;
+    }
+
+    /// Of what is met at the same distance as the nearest, the lowest id.
+    std::optional<PolygonIndex::Nearest> chosen(const std::vector<Polygon>& polygons) const {
+        std::optional<PolygonIndex::Nearest> best;
+        for (const Hit& hit : hits) {
+            if (hit.t > nearest + exact_tie) continue;
+            if (!best || polygons[hit.index].id < polygons[best->index].id) best = {hit.t, hit.index};
+        }
+        return best;
     }
 };
 
@@ -59,7 +74,8 @@ Box bounds_of(const Polygon& polygon) {
         box.low = glm::min(box.low, vertex);
         box.high = glm::max(box.high, vertex);
     }
-    return box;
+    const double room = outline_room(polygon);
+    return {box.low - room, box.high + room};
 }
 
 double reach_of(const Box& box) {
@@ -254,8 +270,7 @@ std::optional<PolygonIndex::Nearest> PolygonIndex::nearest(const ProbeRay& ray, 
         embree_ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(tree_->scene, &query.context, &embree_ray);
     }
-    if (!query.found) return std::nullopt;
-    return Nearest{query.t_max, query.index};
+    return query.chosen(tree_->polygons);
 }
 
 bool PolygonIndex::any(const ProbeRay& ray, std::uint32_t exclude, double t_max) const {
@@ -264,7 +279,7 @@ bool PolygonIndex::any(const ProbeRay& ray, std::uint32_t exclude, double t_max)
         if (query.offer(tree_->polygons, polygon)) return true;
     RTCRay embree_ray;
     if (tree_->begin(embree_ray, query)) rtcOccluded1(tree_->scene, &query.context, &embree_ray);
-    return query.found;
+    return !query.hits.empty();
 }
 
 }  // namespace raycell

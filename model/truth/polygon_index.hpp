@@ -11,7 +11,7 @@
 
 namespace raycell {
 
-/// The nearest polygon among those given, by (t, id), exactly as if all of them had been tried.
+/// The nearest polygon among those given, exactly as if all of them had been tried.
 ///
 /// Every polygon is a user-defined primitive of Embree 3: Embree only walks its tree of boxes, in single
 /// precision; ProbeRay decides, in double. The boxes are padded by more than single precision can lose.
@@ -30,7 +30,8 @@ class PolygonIndex {
         std::size_t index = 0;  ///< into the polygons given
     };
 
-    /// The nearest polygon with nearest_hit < t <= t_max whose id is not `exclude`; equal t: the lower id.
+    /// The nearest polygon with nearest_hit < t <= t_max whose id is not `exclude`; within exact_tie of the nearest: the
+    /// lowest id.
     std::optional<Nearest> nearest(const ProbeRay& ray, std::uint32_t exclude, double t_max) const;
 
     /// Whether any polygon but `exclude` is met with nearest_hit < t <= t_max.

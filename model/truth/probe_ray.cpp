@@ -41,6 +41,23 @@ bool ProbeRay::pierces(const std::vector<dvec3>& outline) const {
     return odd;
 }
 
+/// Whether the point at distance t lies within a hair of the polygon's outline.
+bool ProbeRay::touches(const Polygon& polygon, double t) const {
+    const double room = outline_room(polygon);
+    const dvec2 p = project(at(t), polygon.drop);
+    dvec2 a = project(polygon.vertices.back(), polygon.drop);
+    for (const dvec3& vertex : polygon.vertices) {
+        const dvec2 b = project(vertex, polygon.drop);
+        const dvec2 side = b - a;
+        const double squared = glm::dot(side, side);
+        const double share = squared > 0 ? std::clamp(glm::dot(p - a, side) / squared, 0.0, 1.0) : 0;
+        const dvec2 off = p - (a + share * side);
+        if (glm::dot(off, off) <= room * room) return true;
+        a = b;
+    }
+    return false;
+}
+
 /// Keeps the hit of an almost edge-on polygon within that polygon; also settles 0/0.
 double ProbeRay::clamp_to_extent(double t, const std::vector<dvec3>& outline) const {
     double low = std::numeric_limits<double>::infinity();
@@ -58,7 +75,7 @@ std::optional<double> ProbeRay::meet(const Polygon& polygon, double t_min, doubl
     double t = (polygon.plane.c - glm::dot(polygon.plane.n, origin_)) / slope;
     const bool steep = std::abs(slope) > grazing;
     if (steep && !(t > t_min && t <= t_max)) return std::nullopt;
-    if (!pierces(polygon.vertices)) return std::nullopt;
+    if (!pierces(polygon.vertices) && !(steep && touches(polygon, t))) return std::nullopt;
     if (!steep) t = clamp_to_extent(t, polygon.vertices);
     if (!(t > t_min && t <= t_max)) return std::nullopt;
     return t;

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "model/polygon.hpp"
+#include "model/tolerance.hpp"
 
 namespace raycell {
 
-/// Nothing nearer than this to a ray's origin is hit, cell widths.
-constexpr double nearest_hit = 1e-9;
+/// A ray that passes the polygon's outline by no more than this, in its projection, meets it.
+inline double outline_room(const Polygon& polygon) { return exact_hair + 2 * polygon.slack; }
 
 /// A ray prepared for the test against many polygons, in double precision.
 ///
@@ -18,7 +19,8 @@ constexpr double nearest_hit = 1e-9;
 /// along the ray, as Woop, Benthin and Wald do for triangles (Watertight Ray/Triangle Intersection, 2013).
 /// An edge's crossing then depends on the ray and the edge's two ends alone, bit for bit, not on the polygon
 /// that asks: where polygons share an edge or a vertex, an odd number of those round the ray hold it, so no
-/// ray slips between them and no tolerance is needed.
+/// ray slips between them. A ray that passes an outline by no more than exact_hair meets it too, so that where
+/// edges lie on rays the choice is not left to rounding.
 class ProbeRay {
   public:
     /// Cell coordinates; `direction` is unit (an error of a few 1e-5, as fixed-point words have, does no
@@ -35,6 +37,7 @@ class ProbeRay {
   private:
     dvec2 flatten(const dvec3& point) const;
     bool pierces(const std::vector<dvec3>& outline) const;
+    bool touches(const Polygon& polygon, double t) const;
     double clamp_to_extent(double t, const std::vector<dvec3>& outline) const;
 
     dvec3 origin_;
