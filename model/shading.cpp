@@ -51,6 +51,12 @@ bool refract_direction(const ShadePoint& point, double ior, dvec3& out, const Ar
     return true;
 }
 
+dvec3 transmit_direction(const ShadePoint& point, double ior, const Arithmetic& arithmetic) {
+    dvec3 refracted;
+    return refract_direction(point, ior, refracted, arithmetic) ? refracted
+                                                                : reflect_direction(point, arithmetic);
+}
+
 dvec3 local_intensity(const ShadePoint& point, const Material& material, const Source* sources,
                       std::size_t source_count, std::uint64_t lit, const Arithmetic& arithmetic) {
     const Formats& formats = arithmetic.formats();

@@ -43,6 +43,11 @@ bool refract_direction(const ShadePoint& point, double ior, dvec3& out,
 inline double mirror_share(const Material& m) { return m.mirror ? m.specular : 0.0; }
 inline double transmit_share(const Material& m) { return m.transmit; }
 
+/// Where the share T of a ray goes on: the refracted direction, or on total internal reflection the mirrored
+/// one.
+dvec3 transmit_direction(const ShadePoint& point, double ior,
+                         const Arithmetic& arithmetic = exact_arithmetic());
+
 /// The local part: ambient 0.1·Kd·C, and I·(Kd·C·(N·L) + Ks·(R·L)^Shine) for each source whose bit in `lit`
 /// is set.
 dvec3 local_intensity(const ShadePoint& point, const Material& material, const Source* sources,

@@ -226,9 +226,10 @@ void Sampler::shade(const TruthHit& hit, const dvec3& direction, int generation,
     if (sends(mirrored))
         follow({point.position, reflect_direction(point), polygon.id}, generation + 1, weight * mirrored);
     const double transmitted = transmit_share(material);
-    dvec3 onward;
-    if (sends(transmitted) && refract_direction(point, material.ior, onward))
-        follow({point.position, onward, polygon.id}, generation + 1, weight * transmitted);
+    if (sends(transmitted)) {
+        follow({point.position, transmit_direction(point, material.ior), polygon.id}, generation + 1,
+               weight * transmitted);
+    }
 }
 
 /// Every ray of an even sample of pixels, spread so that any part of it is even, too.

@@ -68,17 +68,19 @@ dvec3 TruthRenderer::Tracer::shade(const ShadePoint& point, const Polygon& polyg
                                         lit_sources(point, polygon.id));
     dvec3 reflected(0), refracted(0);
     const double mirrored = mirror_share(material);
-    if (sends(mirrored, rank)) {
+    const double transmitted = transmit_share(material);
+    const bool by_rule = limits.transmitters_reflect && transmitted > 0 && rank.generation < limits.max_depth;
+    if (by_rule || sends(mirrored, rank)) {
         ++counts.reflected;
         reflected = trace(point.position, reflect_direction(point), polygon.id,
                           {rank.generation + 1, rank.weight * mirrored});
     }
-    const double transmitted = transmit_share(material);
     dvec3 onward;
-    if (sends(transmitted, rank) && refract_direction(point, material.ior, onward)) {
-        ++counts.refracted;
-        refracted =
-            trace(point.position, onward, polygon.id, {rank.generation + 1, rank.weight * transmitted});
+    const bool bends = transmitted > 0 && refract_direction(point, material.ior, onward);
+    if (sends(transmitted, rank) && !(by_rule && !bends)) {
+        ++(bends ? counts.refracted : counts.reflected);
+        refracted = trace(point.position, bends ? onward : reflect_direction(point), polygon.id,
+                          {rank.generation + 1, rank.weight * transmitted});
     }
     return combine_intensity(local, material, reflected, refracted);
 }
@@ -158,7 +160,7 @@ TruthCounts TruthRenderer::count(int n, int threads, const Progress& progress) c
     const double step_y = (scene_.frame.height - 1.0) / (n - 1);
     std::vector<TruthCounts> rows(static_cast<std::size_t>(n));
     for_each_row(n, threads, progress, [&](int y) {
-        Tracer tracer(*this, {4, 0.0});
+        Tracer tracer(*this, {4, 0.0, true});
         Pixel unused;
         for (int x = 0; x < n; ++x) tracer.primary(0.5 + x * step_x, 0.5 + y * step_y, unused);
         rows[static_cast<std::size_t>(y)] = tracer.counts;

@@ -19,6 +19,9 @@ namespace raycell {
 struct TruthSettings {
     int max_depth = 4;              ///< generations after the primary ray, >= 0
     double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut
+    /// SPD's rules 8 and 9: what transmits always sends one reflected ray, whatever its Ks, and on total internal
+    /// reflection no other.
+    bool transmitters_reflect = false;
 };
 
 struct TruthHit {
@@ -32,7 +35,7 @@ struct TruthHit {
 struct TruthCounts {
     std::uint64_t eye = 0;       ///< primary rays
     std::uint64_t eye_hits = 0;  ///< of them, those that hit anything
-    std::uint64_t reflected = 0;
+    std::uint64_t reflected = 0;  ///< those of total internal reflection, too
     std::uint64_t refracted = 0;
     std::uint64_t shadow = 0;  ///< to sources that the normal faces; to others none is sent
 };
@@ -42,7 +45,7 @@ TruthCounts& operator+=(TruthCounts& sum, const TruthCounts& more);
 /// thread-safe; directions are unit, coordinates those of cells.
 ///
 /// A ray never hits the polygon that it leaves (`exclude`, no_polygon for none), and nothing nearer than
-/// `nearest_hit` (1e-9); so it starts exactly at the hit point, without an offset.
+/// `nearest_hit`; so it starts exactly at the hit point, without an offset.
 class TruthRenderer {
   public:
     /// Called with rows done and rows in all; never by two threads at once.
@@ -54,7 +57,8 @@ class TruthRenderer {
     explicit TruthRenderer(const CellScene& scene, const TruthSettings& settings = {});
     explicit TruthRenderer(const CellScene&&, const TruthSettings& = {}) = delete;
 
-    /// The first polygon with nearest_hit < t <= t_max; equal t: the lower id.
+    /// The first polygon with nearest_hit < t <= t_max; of those within exact_tie of the nearest,
+    /// the one with the lowest id.
     std::optional<TruthHit> intersect(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
                                       double t_max = std::numeric_limits<double>::infinity()) const;
 
