@@ -191,6 +191,7 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     packet->wait.cause = Stall::none;
     packet->visit = visit_cell(store_, packet->ray, env_.context, runs_, run_count_);
     packet->stage = RayPacket::Stage::in_test;
+    env_.counters.rays.ties += packet->visit.event == Visit::Event::hit && packet->visit.hit.tied;
     const std::uint32_t cycles =
         unit_cycles(packet->ray.outside ? env_.costs().walk_step
                                         : visit_cycles(packet->visit, env_.settings, env_.costs()));

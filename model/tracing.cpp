@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "model/traffic.hpp"
@@ -105,49 +104,10 @@ Context::Context(const CellScene& placed, const PictureSettings& picture_setting
     background = arithmetic.hold(f.intensity, placed.background);
     eye = arithmetic.hold_place(placed.frame.eye);
     depth = arithmetic.hold(f.depth, placed.frame.depth);
-    const double offset = settings.normal_offset;
-    normal_offset = arithmetic.hold(f.unit, offset < 0 ? arithmetic.default_normal_offset() : offset);
-}
-
-std::vector<std::string> range_warnings(const Context& context) {
-    std::vector<std::string> warnings;
-    const Arithmetic& arithmetic = context.arithmetic;
-    if (arithmetic.exact()) return warnings;
-    const Formats& f = arithmetic.formats();
-    const std::string words = "words of " + std::to_string(f.word_bits) + " bits: ";
-    const auto number = [](double x) {
-        std::ostringstream text;
-        text << x;
-        return text.str();
-    };
-    const auto brightest = [](const dvec3& c) { return std::max({c.x, c.y, c.z}); };
-    double colour = 0;
-    double bend = 0;  // largest ratio of refraction, either way
-    for (const Material& m : context.scene.objects) {
-        colour = std::max({colour, brightest(m.colour), m.diffuse, m.specular, m.transmit});
-        if (m.transmit > 0) bend = std::max({bend, m.ior / f.ior.most(), 1 / (m.ior * f.normal.most())});
-    }
-    double light = brightest(context.scene.background);
-    for (const Source& source : context.scene.sources) light = std::max(light, brightest(source.intensity));
-    if (colour > f.feature.most()) {
-        warnings.push_back(words + "a colour or coefficient of " + number(colour) + " is held as " +
-                           number(f.feature.most()));
-    }
-    if (light > f.intensity.most()) {
-        warnings.push_back(words + "a light of " + number(light) + " is held as " +
-                           number(f.intensity.most()));
-    }
-    if (bend > 1) {
-        warnings.push_back(words + "an index of refraction outside " + number(1 / f.normal.most()) + " to " +
-                           number(f.ior.most()) + " is held as the nearest of these");
-    }
-    // A direction is off by half a last bit a cell.
-    const double drift = context.depth * f.unit.step() / 2;
-    if (drift > 0.1) {
-        warnings.push_back(words + "rays may be off by " + number(drift) + " cells at the back of a cube " +
-                           number(context.depth) + " cells deep");
-    }
-    return warnings;
+    // Exact distances to a polygon and its edges need no help; runs and masks do.
+    const bool none = arithmetic.exact() && settings.hit == HitTest::edge;
+    const double suitable = none ? 0 : arithmetic.default_normal_offset();
+    normal_offset = arithmetic.hold(f.unit, settings.normal_offset < 0 ? suitable : settings.normal_offset);
 }
 
 Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context, const DepthRun* runs,
@@ -292,7 +252,8 @@ HitSetup set_up_hit(const Context& context, const CellStore& store, const Ray& r
         setup.reflected = reflect_direction(setup.point, arithmetic);
     }
     if (worth(transmit_share(material))) {
-        setup.refracts = refract_direction(setup.point, material.ior, setup.refracted, arithmetic);
+        setup.refracts = true;
+        setup.refracted = transmit_direction(setup.point, material.ior, arithmetic);
     }
     return setup;
 }

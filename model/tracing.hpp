@@ -29,10 +29,6 @@ struct Context {
             const SyntheticTraffic* synthetic = nullptr);
 };
 
-/// What of the scene lies outside the range of the machine's words, for standard error: what it is, and what
-/// becomes of it. Empty in exact arithmetic.
-std::vector<std::string> range_warnings(const Context& context);
-
 /// Features as the cells latch them.
 Material hold(const Material& material, const Arithmetic& arithmetic);
 
@@ -98,7 +94,7 @@ struct HitSetup {
     dvec3 local{0, 0, 0};      ///< hit point relative to the cell
     std::uint64_t facing = 0;  ///< bit per source that the normal faces
     bool reflects = false;
-    bool refracts = false;
+    bool refracts = false;  ///< has a child for the share T, mirrored on total internal reflection
     dvec3 reflected{0, 0, 0};
     dvec3 refracted{0, 0, 0};
 };

@@ -106,6 +106,7 @@ UntimedMachine::Answer UntimedMachine::trace(Ray ray, int x, int y, Pixel* pixel
     Place at{x, y};
     for (;;) {
         const Visit visit = visit_cell(cell(at), ray, context_);
+        rays_.ties += visit.event == Visit::Event::hit && visit.hit.tied;
         switch (visit.event) {
             case Visit::Event::hit:
                 return answer_hit(ray, visit.hit, at, pixel);

@@ -19,6 +19,7 @@ struct RayCounts {
     std::uint64_t precast = 0;
     std::uint64_t lost = 0;      ///< left the cube with nothing beyond, or with --exterior none
     std::uint64_t exterior = 0;  ///< handed to the exterior processors
+    std::uint64_t ties = 0;      ///< hits at the same distance as another, of rays sent again too
     std::uint64_t ray_hops = 0;
     std::uint64_t return_hops = 0;
 };

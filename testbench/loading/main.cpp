@@ -144,7 +144,8 @@ int run(Options& options, const OptionTable& table) {
     if (!o.prefix.empty()) check_output(o.prefix);
     check_memory(o);
     const CellScene scene = scene_of(options);
-    for (const std::string& warning : range_warnings(Context(scene, o.picture))) {
+    const Context context(scene, o.picture);
+    for (const std::string& warning : loss_warnings(losses_of(context), context)) {
         std::cerr << "loading_tb: warning: " << warning << '\n';
     }
     const auto start = Clock::now();

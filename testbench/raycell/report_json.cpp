@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "model/losses.hpp"
 #include "model/storage_bits.hpp"
 #include "testbench/raycell/knot_report.hpp"
 
@@ -56,6 +57,21 @@ Json load_activity(const Activity& a) {
             {"bucket_cycles", a.bucket_cycles},
             {"hops", hops},
             {"cells_loaded", loaded}};
+}
+
+/// What words cost, by cause. What a run counted is that of its part; the rest is the scene's.
+Json losses_report(const RunResult& result, const CellScene& scene, const PictureSettings& picture) {
+    const Context context(scene, picture);
+    const Losses losses = losses_of(context);
+    return {{"saturated",
+             {{"features", losses.features},
+              {"indices_of_refraction", losses.indices},
+              {"lights", losses.lights},
+              {"pixels", saturated_pixels(result.picture, context)}}},
+            {"single_normals", losses.single_normals},
+            {"drift_cells", losses.drift},
+            {"ties", result.counters.rays.ties},
+            {"exterior_rays", result.counters.rays.exterior}};
 }
 
 const char* name_of(LoadedBy loading) {
@@ -113,6 +129,7 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
         {"shading", {{"utilisation", cell_cycles > 0 ? double(c.shading_cycles) / cell_cycles : 0.0}}}};
     json["hops"] = {{"load", c.load_hops}, {"ray", c.rays.ray_hops}, {"return", c.rays.return_hops}};
     json["precast"] = {{"hops", result.precast_hops}};
+    json["losses"] = losses_report(result, scene, picture);
     json["rays"] = {{"primary", c.rays.primary},     {"reflected", c.rays.reflected},
                     {"refracted", c.rays.refracted}, {"shadow", c.rays.shadow},
                     {"precast", c.rays.precast},     {"lost", c.rays.lost},

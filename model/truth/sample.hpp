@@ -1,0 +1,19 @@
+// How far a picture is from the truth, by a sample of its pixels: for every run, at little cost.
+#pragma once
+
+#include "model/picture.hpp"
+#include "model/truth/truth.hpp"
+
+namespace raycell {
+
+struct SampledAccuracy {
+    int pixels = 0;      ///< compared, spread evenly
+    double psnr_db = 0;  ///< 200 stands for equal
+};
+
+/// Compares `most` pixels of a finished picture, or all if it has fewer, with the truth. Takes as long as
+/// that many pixels of `truth`.
+SampledAccuracy sample_accuracy(const Picture& picture, const Frame& frame, const TruthRenderer& truth,
+                                int most);
+
+}  // namespace raycell
