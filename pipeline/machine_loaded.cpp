@@ -1,6 +1,7 @@
 // What a machine is once it is loaded, apart from its voxels: so that a run that starts with a saved array
 // goes on in the same cycles, with the same schedule and the same figures of loading, as the one that saved
 // it.
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -73,6 +74,11 @@ void Machine::visit_loading(std::vector<std::uint64_t>& numbers, bool taking, Ru
         cell.restore(loading);
     }
     counts.finish();
+    constexpr Cycle most = Cycle(1) << 62;
+    const double mean = result.buffers.front().mean;
+    if (now > most || result.load_cycles > now || c.last_progress > now || !(mean >= 0) ||
+        !std::isfinite(mean))
+        throw std::runtime_error("a loaded array: its cycles and means contradict each other");
 }
 
 void Machine::use_loaded(LoadedArray array) {
