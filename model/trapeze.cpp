@@ -74,7 +74,7 @@ class Cutter {
                 if (end_of(*start) > middle) crossings_.push_back({0, *start});
             }
             order_crossings(running, middle);
-            slab(s0, s1);
+            slab(s0);
             s0 = s1;
         }
         for (const Open& open : open_) close(open, s0);
@@ -113,8 +113,9 @@ class Cutter {
         std::inplace_merge(crossings_.begin(), fresh, crossings_.end());
     }
 
-    /// Trapezes of the slab: those with the same two sides as one of the slab before go on with it.
-    void slab(double s0, double s1) {
+    /// Trapezes of the slab that begins at s0: those with the same two sides as one of the slab before go on
+    /// with it.
+    void slab(double s0) {
         next_.clear();
         for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
             const Crossing& left = crossings_[i];
