@@ -1,17 +1,17 @@
 #include "model/array_check.hpp"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace raycell {
 namespace {
 
-/// Checks one cell. Messages name the place and what was allowed.
+/// Checks one cell. Messages name the voxel, and what was allowed.
 class CellCheck {
   public:
-    CellCheck(const CellStore& cell, const CellScene& scene, const PictureSettings& picture,
-              std::string place)
-        : cell_(cell), scene_(scene), picture_(picture), place_(std::move(place)) {}
+    CellCheck(const CellStore& cell, const CellScene& scene, const PictureSettings& picture)
+        : cell_(cell), scene_(scene), picture_(picture) {}
 
     void run() {
         const std::size_t voxels = cell_.voxels.size();
@@ -23,14 +23,15 @@ class CellCheck {
                  gouraud ? "one per voxel" : "none");
         for (const dvec3& intensity : cell_.intensities) number("intensity", intensity);
         for (std::size_t i = 0; i < voxels; ++i) {
-            voxel_ = ", voxel " + std::to_string(i);
+            voxel_ = i;
             check(cell_.voxels[i]);
         }
     }
 
   private:
     [[noreturn]] void fail(const std::string& what, const std::string& expected) const {
-        throw std::runtime_error(place_ + voxel_ + ": " + what + "; expected " + expected);
+        const std::string voxel = voxel_ ? ", voxel " + std::to_string(*voxel_) : "";
+        throw std::runtime_error(voxel + ": " + what + "; expected " + expected);
     }
     void at_most(const char* what, std::uint64_t value, std::uint64_t most, std::uint64_t least = 0) const {
         if (value >= least && value <= most) return;
@@ -47,7 +48,7 @@ class CellCheck {
         // What every word is, whatever its format: no more than 48 bits, of which 40 at most are a fraction.
         const double units = value * 0x1p40;
         if (std::abs(value) > 0x1p48 || units != std::floor(units))
-            fail(std::string(what) + " " + std::to_string(value) + " is no word", "fixed-point words");
+            fail(std::string(what) + " is no word", "fixed-point words");
     }
     void number(const char* what, const dvec3& value) const {
         for (int axis = 0; axis < 3; ++axis) number(what, value[axis]);
@@ -93,8 +94,7 @@ class CellCheck {
     const CellStore& cell_;
     const CellScene& scene_;
     const PictureSettings& picture_;
-    const std::string place_;
-    std::string voxel_;
+    std::optional<std::size_t> voxel_;  ///< the one at hand
 };
 
 }  // namespace
@@ -102,7 +102,11 @@ class CellCheck {
 void check_array(const LoadedArray& array, const CellScene& scene, const PictureSettings& picture,
                  const std::string& name) {
     for (std::size_t i = 0; i < array.cells.size(); ++i) {
-        CellCheck(array.cells[i], scene, picture, name + ": is damaged: cell " + std::to_string(i)).run();
+        try {
+            CellCheck(array.cells[i], scene, picture).run();
+        } catch (const std::runtime_error& fault) {
+            throw std::runtime_error(name + ": is damaged: cell " + std::to_string(i) + fault.what());
+        }
     }
 }
 
