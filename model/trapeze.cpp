@@ -57,21 +57,22 @@ class Cutter {
         for (std::uint32_t i = 0; i < v.size(); ++i) {
             levels.push_back(v[i][axis_]);
             starts.push_back(i);
+            runs_.push_back(run_of(side(i)));
         }
         std::sort(levels.begin(), levels.end());
         std::sort(starts.begin(), starts.end(),
-                  [&](std::uint32_t a, std::uint32_t b) { return begin_of(a) < begin_of(b); });
+                  [&](std::uint32_t a, std::uint32_t b) { return runs_[a].begin < runs_[b].begin; });
         opened_by_.assign(v.size(), 0);
         auto start = starts.cbegin();
         double s0 = levels.front();
         for (const double s1 : levels) {
             if (s1 - s0 < least_slab) continue;
             const double middle = 0.5 * (s0 + s1);
-            const auto ended = [&](const Crossing& c) { return end_of(c.side) <= middle; };
+            const auto ended = [&](const Crossing& c) { return runs_[c.side].end <= middle; };
             crossings_.erase(std::remove_if(crossings_.begin(), crossings_.end(), ended), crossings_.end());
             const auto running = std::ptrdiff_t(crossings_.size());
-            for (; start != starts.cend() && begin_of(*start) <= middle; ++start) {
-                if (end_of(*start) > middle) crossings_.push_back({0, *start});
+            for (; start != starts.cend() && runs_[*start].begin <= middle; ++start) {
+                if (runs_[*start].end > middle) crossings_.push_back({0, *start});
             }
             order_crossings(running, middle);
             slab(s0);
@@ -89,6 +90,14 @@ class Cutter {
             return place < o.place || (place == o.place && side < o.side);
         }
     };
+    struct Run {  // of a side along the sweep
+        double begin;
+        double end;
+        double u;   ///< place at the beginning
+        double du;  ///< and what is added to it up to the end
+        double v;
+        double dv;
+    };
     struct Open {  // a trapeze whose two sides run on into the next slab
         std::uint32_t left;
         std::uint32_t right;
@@ -100,13 +109,26 @@ class Cutter {
         const auto& v = polygon_.vertices;
         return {v[i], v[i + 1 < v.size() ? i + 1 : 0]};
     }
-    double begin_of(std::uint32_t i) const { return std::min(side(i).a[axis_], side(i).b[axis_]); }
-    double end_of(std::uint32_t i) const { return std::max(side(i).a[axis_], side(i).b[axis_]); }
+    /// What point_at takes of a side, in the two axes beside the sweep's.
+    Run run_of(const Side& side) const {
+        const bool forward = side.a[axis_] < side.b[axis_];
+        const dvec3& from = forward ? side.a : side.b;
+        const dvec3& to = forward ? side.b : side.a;
+        const int u = axis_ == 0 ? 1 : 0;
+        const int v = axis_ == 2 ? 1 : 2;
+        return {from[axis_], to[axis_], from[u], to[u] - from[u], from[v], to[v] - from[v]};
+    }
 
     /// The first `running` crossings have the order of the slab before, which is theirs here too unless sides
     /// cross.
     void order_crossings(std::ptrdiff_t running, double middle) {
-        for (Crossing& c : crossings_) c.place = glm::dot(along_, point_at(side(c.side), axis_, middle));
+        const double along_u = axis_ == 0 ? along_.y : along_.x;
+        const double along_v = axis_ == 2 ? along_.y : along_.z;
+        for (Crossing& c : crossings_) {
+            const Run& run = runs_[c.side];
+            const double share = (middle - run.begin) / (run.end - run.begin);
+            c.place = along_u * (run.u + run.du * share) + along_v * (run.v + run.dv * share);
+        }
         const auto fresh = crossings_.begin() + running;
         if (!std::is_sorted(crossings_.begin(), fresh)) std::sort(crossings_.begin(), fresh);
         std::sort(fresh, crossings_.end());
@@ -207,6 +229,7 @@ class Cutter {
     const Polygon& polygon_;
     int axis_;
     dvec3 along_;
+    std::vector<Run> runs_;            ///< per side
     std::vector<Crossing> crossings_;  ///< of the slab at hand, from left to right
     std::vector<Open> open_;
     std::vector<Open> next_;
