@@ -45,6 +45,16 @@ void visit_stage(Counts& counts, StageStatistics& stage) {
     counts.visit(stage.busy_cycles);
 }
 
+/// What must hold of a machine of so many cells at the end of its loading.
+void check_loading(const Counters& c, Cycle now, std::size_t cells, const RunResult& result) {
+    constexpr Cycle most = Cycle(1) << 62;  // far from the end of the numbers
+    const double mean = result.buffers.front().mean;
+    const bool times = now <= most && result.load_cycles <= now && c.last_progress <= now;
+    const bool messages = c.loads_sent == c.loads_delivered && c.cells_loaded == cells;
+    if (!times || !messages || !(mean >= 0) || !std::isfinite(mean))
+        throw std::runtime_error("a loaded array: its cycles and messages contradict each other");
+}
+
 }  // namespace
 
 void Machine::visit_loading(std::vector<std::uint64_t>& numbers, bool taking, RunResult& result) {
@@ -74,11 +84,7 @@ void Machine::visit_loading(std::vector<std::uint64_t>& numbers, bool taking, Ru
         cell.restore(loading);
     }
     counts.finish();
-    constexpr Cycle most = Cycle(1) << 62;
-    const double mean = result.buffers.front().mean;
-    if (now > most || result.load_cycles > now || c.last_progress > now || !(mean >= 0) ||
-        !std::isfinite(mean))
-        throw std::runtime_error("a loaded array: its cycles and means contradict each other");
+    if (taking) check_loading(c, now, array_.cells().size(), result);
 }
 
 void Machine::use_loaded(LoadedArray array) {
