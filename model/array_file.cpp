@@ -96,7 +96,9 @@ class Get {
     explicit Get(Reader& in) : in_(in) {}
     template <typename T>
     void whole(T& value) {
-        value = T(in_.next());
+        const std::uint64_t number = in_.next();
+        value = T(number);
+        if (std::uint64_t(std::int64_t(value)) != number) in_.fail("is damaged; expected a loaded array");
     }
     void real(double& value) {
         const std::uint64_t bits = in_.next();
@@ -146,10 +148,6 @@ CellStore get_cell(Reader& reader) {
     for (std::size_t i = 0; i < voxels; ++i) fields_of_voxel(get, cell.voxels.emplace_back());
     for (std::size_t i = 0; i < edges; ++i) fields_of_edge(get, cell.edges.emplace_back());
     for (std::size_t i = 0; i < intensities; ++i) get.vector(cell.intensities.emplace_back());
-    for (const Voxel& voxel : cell.voxels) {
-        if (voxel.drop > 2 || std::uint64_t(voxel.first_edge) + voxel.edge_count > edges)
-            reader.fail("is damaged; expected a loaded array");
-    }
     return cell;
 }
 

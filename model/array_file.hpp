@@ -29,7 +29,8 @@ std::uint64_t loading_timing(const MachineSettings& machine);
 /// caller's to look for.
 void write_array(std::FILE* file, const LoadedArray& array);
 
-/// Throws std::runtime_error "NAME: what" for what is no such file, is damaged or cut off.
+/// Throws std::runtime_error "NAME: what" for what is no such file, is damaged or cut off. What its fields
+/// say is check_array()'s to look at.
 LoadedArray read_array(std::FILE* file, const std::string& name);
 
 }  // namespace raycell

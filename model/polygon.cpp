@@ -168,27 +168,36 @@ std::vector<dvec3> clip_to_box(std::vector<dvec3> outline, const Box& box) {
 }
 
 std::vector<std::array<std::size_t, 3>> triangulate(const std::vector<dvec3>& outline, const dvec3& normal) {
+    const std::size_t n = outline.size();
     const int drop = dominant_axis(normal);
+    std::vector<dvec2> flat;
+    for (const dvec3& p : outline) flat.push_back(project(p, drop));
     // Seen from the side where the outline runs counter-clockwise in (u, v).
-    const double turn = drop == 1 ? -normal[drop] : normal[drop];
+    const double turn = (drop == 1 ? -normal[drop] : normal[drop]) > 0 ? 1 : -1;
     const auto area = [&](std::size_t a, std::size_t b, std::size_t c) {
-        const dvec2 p = project(outline[a], drop);
-        const dvec2 q = project(outline[b], drop) - p;
-        const dvec2 r = project(outline[c], drop) - p;
-        return (q.x * r.y - q.y * r.x) * (turn > 0 ? 1 : -1);
+        const dvec2 q = flat[b] - flat[a];
+        const dvec2 r = flat[c] - flat[a];
+        return (q.x * r.y - q.y * r.x) * turn;
     };
-    std::vector<std::size_t> rest(outline.size());
-    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = i;
+    std::vector<std::size_t> rest(n);
+    for (std::size_t i = 0; i < n; ++i) rest[i] = i;
+    std::vector<bool> cut(n, false);
+    // Of each corner's triangle: all vertices before this one are known to lie outside of it. They only get
+    // fewer, so that a search goes on where the one before ended.
+    std::vector<std::size_t> outside_before(n, 0);
     std::vector<std::array<std::size_t, 3>> triangles;
+    const auto corner = [&](std::size_t k) {
+        const std::size_t before = k > 0 ? k - 1 : rest.size() - 1;
+        const std::size_t after = k + 1 < rest.size() ? k + 1 : 0;
+        return std::array<std::size_t, 3>{rest[before], rest[k], rest[after]};
+    };
     const auto is_ear = [&](std::size_t k) {
-        const std::size_t a = rest[(k + rest.size() - 1) % rest.size()];
-        const std::size_t b = rest[k];
-        const std::size_t c = rest[(k + 1) % rest.size()];
+        const auto [a, b, c] = corner(k);
         if (!(area(a, b, c) > 0)) return false;
-        for (const std::size_t p : rest) {
-            if (p == a || p == b || p == c) continue;
+        for (std::size_t& p = outside_before[b]; p < n; ++p) {
+            if (cut[p] || area(a, b, p) < 0 || area(b, c, p) < 0 || area(c, a, p) < 0) continue;
             if (outline[p] == outline[a] || outline[p] == outline[b] || outline[p] == outline[c]) continue;
-            if (area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0) return false;
+            return false;
         }
         return true;
     };
@@ -196,8 +205,10 @@ std::vector<std::array<std::size_t, 3>> triangulate(const std::vector<dvec3>& ou
         std::size_t ear = 0;
         while (ear < rest.size() && !is_ear(ear)) ++ear;
         if (ear == rest.size()) ear = 0;  // an outline that crosses itself: any corner, so that it ends
-        triangles.push_back(
-            {rest[(ear + rest.size() - 1) % rest.size()], rest[ear], rest[(ear + 1) % rest.size()]});
+        triangles.push_back(corner(ear));
+        const auto [a, b, c] = triangles.back();
+        cut[b] = true;
+        outside_before[a] = outside_before[c] = 0;
         rest.erase(rest.begin() + std::ptrdiff_t(ear));
     }
     if (rest.size() == 3) triangles.push_back({rest[0], rest[1], rest[2]});

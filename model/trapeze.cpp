@@ -43,6 +43,7 @@ dvec3 point_at(const Side& side, int axis, double s) {
     return p;
 }
 
+/// A sweep: of the sides, only those that cross the slab at hand are looked at.
 class Cutter {
   public:
     /// `shared`: what lies this near to a cell's border belongs to both cells.
@@ -54,61 +55,117 @@ class Cutter {
     }
 
     std::vector<Trapeze> run() {
+        const auto& v = polygon_.vertices;
         std::vector<double> levels;
-        for (const dvec3& v : polygon_.vertices) levels.push_back(v[axis_]);
+        std::vector<std::uint32_t> starts;  // sides, by their beginnings
+        for (std::uint32_t i = 0; i < v.size(); ++i) {
+            levels.push_back(v[i][axis_]);
+            starts.push_back(i);
+            runs_.push_back(run_of(side(i)));
+        }
         std::sort(levels.begin(), levels.end());
+        std::sort(starts.begin(), starts.end(),
+                  [&](std::uint32_t a, std::uint32_t b) { return runs_[a].begin < runs_[b].begin; });
+        opened_by_.assign(v.size(), 0);
+        auto start = starts.cbegin();
         double s0 = levels.front();
         for (const double s1 : levels) {
             if (s1 - s0 < least_slab) continue;
-            slab(s0, s1);
+            const double middle = 0.5 * (s0 + s1);
+            const auto ended = [&](const Crossing& c) { return runs_[c.side].end <= middle; };
+            crossings_.erase(std::remove_if(crossings_.begin(), crossings_.end(), ended), crossings_.end());
+            const auto running = std::ptrdiff_t(crossings_.size());
+            for (; start != starts.cend() && runs_[*start].begin <= middle; ++start) {
+                if (runs_[*start].end > middle) crossings_.push_back({0, *start});
+            }
+            order_crossings(running, middle);
+            slab(s0);
             s0 = s1;
         }
-        for (const Open& open : open_) close(open);
+        for (const Open& open : open_) close(open, s0);
         return std::move(trapezes_);
     }
 
   private:
+    struct Crossing {  // of a side with the middle of a slab
+        double place;
+        std::uint32_t side;  ///< index of its first vertex
+        bool operator<(const Crossing& o) const {
+            return place < o.place || (place == o.place && side < o.side);
+        }
+    };
+    struct Run {  // of a side along the sweep
+        double begin;
+        double end;
+        double u;   ///< place at the beginning
+        double du;  ///< and what is added to it up to the end
+        double v;
+        double dv;
+    };
     struct Open {  // a trapeze whose two sides run on into the next slab
-        Side left;
-        Side right;
+        std::uint32_t left;
+        std::uint32_t right;
         double s0;
-        double s1;
+        bool runs_on = false;
     };
 
-    void slab(double s0, double s1) {
-        const double middle = 0.5 * (s0 + s1);
-        struct Crossing {
-            double place;
-            Side side;
-        };
-        std::vector<Crossing> crossings;
+    Side side(std::uint32_t i) const {
         const auto& v = polygon_.vertices;
-        for (std::size_t i = 0; i < v.size(); ++i) {
-            const Side side{v[i], v[(i + 1) % v.size()]};
-            if ((side.a[axis_] <= middle) == (side.b[axis_] <= middle)) continue;
-            crossings.push_back({glm::dot(along_, point_at(side, axis_, middle)), side});
-        }
-        std::stable_sort(crossings.begin(), crossings.end(),
-                         [](const Crossing& a, const Crossing& b) { return a.place < b.place; });
-        std::vector<Open> next;
-        for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
-            if (!(crossings[i + 1].place > crossings[i].place)) continue;  // a bridge left by clipping
-            Open open{crossings[i].side, crossings[i + 1].side, s0, s1};
-            const auto before = std::find_if(open_.begin(), open_.end(), [&](const Open& o) {
-                return o.s1 == s0 && o.left.a == open.left.a && o.left.b == open.left.b &&
-                       o.right.a == open.right.a && o.right.b == open.right.b;
-            });
-            if (before != open_.end()) {
-                open.s0 = before->s0;
-                open_.erase(before);
-            }
-            next.push_back(open);
-        }
-        for (const Open& open : open_) close(open);
-        open_ = std::move(next);
+        return {v[i], v[i + 1 < v.size() ? i + 1 : 0]};
+    }
+    /// What point_at takes of a side, in the two axes beside the sweep's.
+    Run run_of(const Side& side) const {
+        const bool forward = side.a[axis_] < side.b[axis_];
+        const dvec3& from = forward ? side.a : side.b;
+        const dvec3& to = forward ? side.b : side.a;
+        const int u = axis_ == 0 ? 1 : 0;
+        const int v = axis_ == 2 ? 1 : 2;
+        return {from[axis_], to[axis_], from[u], to[u] - from[u], from[v], to[v] - from[v]};
     }
 
-    void close(const Open& open) {
+    /// The first `running` crossings have the order of the slab before, which is theirs here too unless sides
+    /// cross.
+    void order_crossings(std::ptrdiff_t running, double middle) {
+        const double along_u = axis_ == 0 ? along_.y : along_.x;
+        const double along_v = axis_ == 2 ? along_.y : along_.z;
+        for (Crossing& c : crossings_) {
+            const Run& run = runs_[c.side];
+            const double share = (middle - run.begin) / (run.end - run.begin);
+            c.place = along_u * (run.u + run.du * share) + along_v * (run.v + run.dv * share);
+        }
+        const auto fresh = crossings_.begin() + running;
+        if (!std::is_sorted(crossings_.begin(), fresh)) std::sort(crossings_.begin(), fresh);
+        std::sort(fresh, crossings_.end());
+        std::inplace_merge(crossings_.begin(), fresh, crossings_.end());
+    }
+
+    /// Trapezes of the slab that begins at s0: those with the same two sides as one of the slab before go on
+    /// with it.
+    void slab(double s0) {
+        next_.clear();
+        for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
+            const Crossing& left = crossings_[i];
+            const Crossing& right = crossings_[i + 1];
+            if (!(right.place > left.place)) continue;  // a bridge left by clipping
+            Open open{left.side, right.side, s0};
+            const std::size_t before = opened_by_[left.side];
+            if (before < open_.size() && open_[before].left == left.side &&
+                open_[before].right == right.side) {
+                open.s0 = open_[before].s0;
+                open_[before].runs_on = true;
+            }
+            opened_by_[left.side] = next_.size();
+            next_.push_back(open);
+        }
+        for (const Open& open : open_) {
+            if (!open.runs_on) close(open, s0);
+        }
+        open_.swap(next_);
+    }
+
+    void close(const Open& open, double s1) {
+        const Side left = side(open.left);
+        const Side right = side(open.right);
         Trapeze t;
         t.polygon = polygon_.id;
         t.object = polygon_.object;
@@ -117,8 +174,8 @@ class Cutter {
         t.normal = polygon_.normal;
         t.slack = dvec3(shared_);
         t.slack[t.drop] += polygon_.slack;
-        const dvec3 ring[] = {point_at(open.left, axis_, open.s0), point_at(open.right, axis_, open.s0),
-                              point_at(open.right, axis_, open.s1), point_at(open.left, axis_, open.s1)};
+        const dvec3 ring[] = {point_at(left, axis_, open.s0), point_at(right, axis_, open.s0),
+                              point_at(right, axis_, s1), point_at(left, axis_, s1)};
         dvec3 centre{0, 0, 0};
         for (const dvec3& p : ring) centre += 0.25 * p;
         for (const dvec3& p : ring) {
@@ -130,10 +187,10 @@ class Cutter {
             --t.corner_count;
         if (t.corner_count < 3) return;
         const dvec2 inside = project(centre, t.drop);
-        side_edge(t, open.left, inside);
-        side_edge(t, open.right, inside);
+        side_edge(t, left, inside);
+        side_edge(t, right, inside);
         cut_edge(t, open.s0, 1);
-        cut_edge(t, open.s1, -1);
+        cut_edge(t, s1, -1);
         // Hit points lie on the plane, the outline perhaps a little off it, and the neighbour's plane off the
         // other way.
         for (int i = 0; i < t.edge_count; ++i) t.edges[std::size_t(i)].c += 2 * polygon_.slack;
@@ -178,7 +235,11 @@ class Cutter {
     double shared_;
     int axis_;
     dvec3 along_;
+    std::vector<Run> runs_;            ///< per side
+    std::vector<Crossing> crossings_;  ///< of the slab at hand, from left to right
     std::vector<Open> open_;
+    std::vector<Open> next_;
+    std::vector<std::size_t> opened_by_;  ///< per side: the index in `open_` that it is the left one of
     std::vector<Trapeze> trapezes_;
 };
 

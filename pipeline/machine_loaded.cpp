@@ -1,6 +1,7 @@
 // What a machine is once it is loaded, apart from its voxels: so that a run that starts with a saved array
 // goes on in the same cycles, with the same schedule and the same figures of loading, as the one that saved
 // it.
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -44,6 +45,16 @@ void visit_stage(Counts& counts, StageStatistics& stage) {
     counts.visit(stage.busy_cycles);
 }
 
+/// What must hold of a machine of so many cells at the end of its loading.
+void check_loading(const Counters& c, Cycle now, std::size_t cells, const RunResult& result) {
+    constexpr Cycle most = Cycle(1) << 62;  // far from the end of the numbers
+    const double mean = result.buffers.front().mean;
+    const bool times = now <= most && result.load_cycles <= now && c.last_progress <= now;
+    const bool messages = c.loads_sent == c.loads_delivered && c.cells_loaded == cells;
+    if (!times || !messages || !(mean >= 0) || !std::isfinite(mean))
+        throw std::runtime_error("a loaded array: its cycles and messages contradict each other");
+}
+
 }  // namespace
 
 void Machine::visit_loading(std::vector<std::uint64_t>& numbers, bool taking, RunResult& result) {
@@ -73,6 +84,7 @@ void Machine::visit_loading(std::vector<std::uint64_t>& numbers, bool taking, Ru
         cell.restore(loading);
     }
     counts.finish();
+    if (taking) check_loading(c, now, array_.cells().size(), result);
 }
 
 void Machine::use_loaded(LoadedArray array) {

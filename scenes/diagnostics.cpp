@@ -35,7 +35,7 @@ std::string printable(std::string_view word, std::size_t limit) {
 void Diagnostics::warn(const std::string& file, std::size_t line, const std::string& kind,
                        const std::string& text, std::size_t shown) {
     ++warnings_;
-    Kind& group = kinds_[kind];
+    Kind& group = kinds_[{kind, file}];
     ++group.count;
     group.last_line = line;
     if (group.shown >= shown) return;
@@ -60,8 +60,10 @@ std::vector<std::string> Diagnostics::messages() const {
 }
 
 std::size_t Diagnostics::count_of(const std::string& kind) const {
-    const auto found = kinds_.find(kind);
-    return found == kinds_.end() ? 0 : found->second.count;
+    std::size_t count = 0;
+    for (auto at = kinds_.lower_bound({kind, ""}); at != kinds_.end() && at->first.first == kind; ++at)
+        count += at->second.count;
+    return count;
 }
 
 }  // namespace raycell

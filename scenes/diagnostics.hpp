@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace raycell {
@@ -28,7 +29,8 @@ class Diagnostics {
   public:
     static constexpr std::size_t shown_of_a_kind = 5;
 
-    /// `kind` groups warnings; of each at most `shown` are kept, the last with the number of those left out.
+    /// `kind` groups the warnings of a file; of each at most `shown` are kept, the last with the number of
+    /// those left out.
     void warn(const std::string& file, std::size_t line, const std::string& kind, const std::string& text,
               std::size_t shown = shown_of_a_kind);
 
@@ -41,7 +43,7 @@ class Diagnostics {
     /// Number of warnings, those left out of messages() included, notes not.
     std::size_t warning_count() const { return warnings_; }
 
-    /// Number of warnings of one kind.
+    /// Number of warnings of one kind, in all files.
     std::size_t count_of(const std::string& kind) const;
 
   private:
@@ -52,7 +54,7 @@ class Diagnostics {
         std::size_t shown = 0;
     };
     std::vector<std::string> messages_;
-    std::map<std::string, Kind> kinds_;
+    std::map<std::pair<std::string, std::string>, Kind> kinds_;  ///< by kind and file
     std::size_t warnings_ = 0;
 };
 

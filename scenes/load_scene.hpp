@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "model/scene.hpp"
+#include "scenes/default_view.hpp"
 #include "scenes/diagnostics.hpp"
 #include "scenes/nff_reader.hpp"
 #include "scenes/obj_reader.hpp"

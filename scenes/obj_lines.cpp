@@ -7,7 +7,7 @@ namespace raycell {
 
 namespace {
 
-constexpr std::string_view blanks = " \t\v\f";
+constexpr std::string_view blanks = " \t\v\f\x1a";  // DOS ends a text with Ctrl-Z
 
 void trim(std::string& line) {
     const std::size_t last = line.find_last_not_of(blanks);
@@ -54,6 +54,13 @@ std::vector<std::string_view> split(std::string_view line) {
         at = line.find_first_not_of(blanks, stop);
     }
     return words;
+}
+
+std::string UnknownWords::kind(std::string_view word) {
+    const std::string name = printable(word);
+    if (named_.count(name) == 0 && named_.size() == most_named) return "more unknown words";
+    named_.insert(name);
+    return "unknown word '" + name + "'";
 }
 
 std::string_view rest_of(std::string_view line) {

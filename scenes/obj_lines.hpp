@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <streambuf>
 #include <string>
 #include <string_view>
@@ -34,6 +35,18 @@ class LineReader {
 
 /// Splits at spaces and tabs; the views point into `line`.
 std::vector<std::string_view> split(std::string_view line);
+
+/// Kinds of warnings for words that a reader does not know: one for each of the first few, one for all
+/// others, so that no file gives a message for each of its lines.
+class UnknownWords {
+  public:
+    static constexpr std::size_t most_named = 16;
+    /// "unknown word 'x'", or "more unknown words".
+    std::string kind(std::string_view word);
+
+  private:
+    std::set<std::string> named_;
+};
 
 /// The line without its first word.
 std::string_view rest_of(std::string_view line);

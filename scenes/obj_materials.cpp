@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/input_file.hpp"
 #include "scenes/obj_lines.hpp"
 
 namespace raycell {
@@ -25,7 +26,9 @@ struct Facts {
     std::string name;
     std::size_t line = 0;
     bool has_diffuse = false;
-    bool has_filter = false;             ///< Tf
+    bool has_filter = false;  ///< Tf
+    bool has_illum = false;
+    bool ambient = false;                ///< Ka is not black
     std::optional<double> dissolve;      ///< d
     std::optional<double> transparency;  ///< Tr
 };
@@ -57,10 +60,41 @@ class MtlFeed : public LineFeed {
             scalar(words, text);
         } else if (key == "illum") {
             illumination(words, text);
-        } else if (key.substr(0, 4) == "map_") {
-            diagnostics_.warn(lines_.file(), lines_.line(), "texture", "textures are not read", 1);
+        } else {
+            leave_out(words);
         }
         return true;
+    }
+
+    /// Names what is not read, once per kind.
+    void leave_out(const std::vector<std::string_view>& words) {
+        const std::string_view key = words[0];
+        const auto is_one_of = [&](std::initializer_list<std::string_view> keys) {
+            return std::find(keys.begin(), keys.end(), key) != keys.end();
+        };
+        const auto name = [&](const std::string& why) {
+            const std::string quoted = "'" + printable(key) + "'";
+            diagnostics_.warn(lines_.file(), lines_.line(), "ignored " + quoted, quoted + why, 1);
+        };
+        if (key == "Ka" || key == "Ke") {
+            const bool black = std::none_of(words.begin() + 1, words.end(), [](std::string_view word) {
+                double value = 0;
+                return parse_number(word, value) == NumberFault::none && value > 0;
+            });
+            if (key == "Ka" && in_material_) facts_.back().ambient = !black;
+            if (key == "Ke" && !black)
+                name(" (emission) is ignored: the surface gives no light and is lit like any other");
+        } else if (key.substr(0, 4) == "map_" || is_one_of({"bump", "norm", "disp", "decal", "refl"})) {
+            name(" is ignored: textures are not read");
+        } else if (is_one_of({"Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"})) {
+            name(" is ignored: a material has Kd, Ks, Ns, Ni and d, no physically based values");
+        } else if (key == "sharpness") {
+            name(" is ignored: reflections are sharp");
+        } else {
+            // Before the first material it may be any file: none of its text in messages.
+            const std::string kind = facts_.empty() ? "unknown word" : unknown_.kind(key);
+            diagnostics_.warn(lines_.file(), lines_.line(), kind, kind + "; the line is ignored", 1);
+        }
     }
 
     void begin_material(std::string& text) {
@@ -86,13 +120,10 @@ class MtlFeed : public LineFeed {
 
     /// The number, or nothing where the line makes another sense or none. No text of the file in messages: a
     /// library may turn out to be something else.
-    std::optional<double> number(std::string_view word) {
+    static std::optional<double> number(std::string_view word) {
         double value = 0;
-        const NumberFault fault = parse_number(word, value);
-        if (fault == NumberFault::none) return value;
-        if (fault == NumberFault::malformed) return std::nullopt;
-        throw InputError(lines_.file(), lines_.line(), "a value of the material can't be used",
-                         describe(fault));
+        if (parse_number(word, value) != NumberFault::none) return std::nullopt;
+        return value;
     }
 
     void colour(const std::vector<std::string_view>& words, std::string& text) {
@@ -137,6 +168,7 @@ class MtlFeed : public LineFeed {
             warn(lines_.line(), "illumination model", "illum is not one of 0 to 10; taken as 2");
             model = 2;
         }
+        facts_.back().has_illum = true;
         text = "illum " + std::to_string(model) + "\n";
     }
 
@@ -144,6 +176,7 @@ class MtlFeed : public LineFeed {
     const std::map<std::string, std::uint32_t>& known_;
     Diagnostics& diagnostics_;
     std::vector<Facts> facts_;
+    UnknownWords unknown_;
     std::string line_;
     bool in_material_ = false;
 };
@@ -166,6 +199,8 @@ Material convert(const tinyobj::material_t& in, const Facts& facts, MtlFeed& fee
     } else {
         warn("no Kd", "a material without Kd; it gets the default colour (grey 0.7, Kd 0.8)");
     }
+    if (facts.has_diffuse && m.colour == dvec3(0) && facts.ambient)
+        warn("Ka", "Ka is ignored: ambient light takes the colour of Kd, which is black");
     m.specular = share(mean(in.specular), "the mean of Ks is outside 0 to 1; brought to the nearest of them");
     m.mirror = in.illum >= 3 && in.illum <= 9;
     if (in.shininess < 0) warn("negative Ns", "Ns below 0; taken as 0");
@@ -186,12 +221,20 @@ Material convert(const tinyobj::material_t& in, const Facts& facts, MtlFeed& fee
     if (refracts && !says_opacity && facts.has_filter) {
         warn("Tf", "illum asks for refraction without d or Tr; the mean of Tf is the transmitted share");
     }
+    const dvec3 filter(in.transmittance[0], in.transmittance[1], in.transmittance[2]);
+    if (refracts && says_opacity && facts.has_filter && filter != dvec3(1)) {
+        warn("Tf ignored", "Tf is ignored where d or Tr is given: glass has no colour of its own");
+    }
     const double through = says_opacity ? 1 - in.dissolve : facts.has_filter ? mean(in.transmittance) : 0;
     if (refracts) {
         m.transmit =
             share(through, "the transmitted share is outside 0 to 1; brought to the nearest of them");
     } else if (says_opacity && through > 0) {
-        warn("opaque", "d or Tr lets light through, but illum asks for no refraction; opaque");
+        warn("opaque",
+             facts.has_illum
+                 ? "d or Tr lets light through, but illum asks for no refraction; opaque"
+                 : "d or Tr lets light through, but no illum is given; opaque, as only illum 4, 6, 7 "
+                   "and 9 refract");
     }
     return m;
 }
@@ -222,22 +265,24 @@ void MaterialLibraries::load(std::string_view name, const Place& place, Scene& s
     if (relative.is_absolute() || from_root.empty() || *from_root.begin() == "..") {
         return refuse("is outside the scene's folder and not opened");
     }
-    if (!std::filesystem::is_regular_file(path, error)) return refuse("can't be found");
+    if (!std::filesystem::exists(path, error)) return refuse("can't be found");
+    const std::string fault = input_fault(path);
+    if (!fault.empty()) return refuse(fault);
     if (!loaded_.insert(path).second) return;
 
-    std::optional<TextSource> source;
-    try {
-        source.emplace(folder_ / relative);
-    } catch (const InputError&) {
-        return refuse("can't be read");
-    }
-    MtlFeed feed(std::move(*source), by_name_, diagnostics);
-    std::istream stream(&feed);
-    stream.exceptions(std::ios::badbit);  // else the stream would swallow the feed's errors
     std::map<std::string, int> indices;
     std::vector<tinyobj::material_t> materials;
     std::string warnings, errors;  // the feed has said it all, with lines
-    tinyobj::LoadMtl(&indices, &materials, &stream, &warnings, &errors);
+    std::optional<MtlFeed> reading;
+    try {
+        reading.emplace(TextSource(folder_ / relative), by_name_, diagnostics);
+        std::istream stream(&*reading);
+        stream.exceptions(std::ios::badbit);  // else the stream would swallow the feed's errors
+        tinyobj::LoadMtl(&indices, &materials, &stream, &warnings, &errors);
+    } catch (const InputError& fault_in_text) {
+        return refuse(std::string("can't be read (") + fault_in_text.what() + ")");
+    }
+    MtlFeed& feed = *reading;
     for (const Facts& facts : feed.facts()) {
         const auto found = indices.find(facts.name);
         if (found == indices.end()) continue;

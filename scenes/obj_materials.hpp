@@ -18,7 +18,8 @@ namespace raycell {
 /// The materials that an OBJ scene can name. Kd becomes the colour (with diffuse 1; without Kd the default
 /// Material's), the mean of Ks the specular share, mirrored where illum is 3 to 9; Ns the shine, Ni the index
 /// of refraction; 1 - d, or Tr, the transmitted share where illum is 4, 6, 7 or 9, and the mean of Tf where
-/// such a material has neither. Ka, Ke and textures are not read.
+/// such a material has neither. What else there is (Ka, Ke, textures, physically based values, unknown words)
+/// is left out; a warning names it, once per kind and file, but for a black Ke and a Ka that changes nothing.
 ///
 /// Each with a warning: d holds against Tr; the first of two materials of one name; missing components repeat
 /// the last one given; shares are brought into 0..1, a negative Ns to 0; Ni below 0.01 becomes 1; an unknown
@@ -29,7 +30,7 @@ class MaterialLibraries {
 
     /// Adds a library's materials to the scene. A library that is missing, or outside the scene's folder
     /// (also by a symbolic link), is not opened; a warning says so. `place` is where the scene names it.
-    /// Throws InputError for numbers that are not finite or beyond 1e30, and for a file that is no text.
+    /// The same of a library that is no text: no fault of a material makes the geometry another one.
     void load(std::string_view name, const Place& place, Scene& scene, Diagnostics& diagnostics);
 
     /// Index into Scene::materials.

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "model/input_file.hpp"
+
 namespace raycell {
 
 namespace {
@@ -70,16 +72,8 @@ std::string printable_path(const std::filesystem::path& path) {
 }
 
 TextSource::TextSource(const std::filesystem::path& path) : name_(printable_path(path)) {
-    std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (status.type() == std::filesystem::file_type::not_found) {
-        throw InputError(name_, 0, "no such file", "a scene file");
-    }
-    if (error) throw InputError(name_, 0, "can't be opened: " + error.message(), "a readable file");
-    if (std::filesystem::is_directory(status)) throw InputError(name_, 0, "is a directory", "a file");
-    if (!std::filesystem::is_regular_file(status)) {
-        throw InputError(name_, 0, "is a device, pipe or socket", "a regular file");
-    }
+    const std::string fault = input_fault(path);
+    if (!fault.empty()) throw InputError(name_, 0, fault, "a readable file");
     file_.reset(std::fopen(path.c_str(), "rb"));
     if (!file_) {
         throw InputError(name_, 0, std::string("can't be opened: ") + std::strerror(errno),

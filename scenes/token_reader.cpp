@@ -7,7 +7,8 @@ namespace raycell {
 
 namespace {
 
-bool is_space(int c) { return c == ' ' || c == '\n' || c == '\t' || c == '\f' || c == '\v'; }
+/// Ctrl-Z is among them: DOS ends a text with it.
+bool is_space(int c) { return c == ' ' || c == '\n' || c == '\t' || c == '\f' || c == '\v' || c == 0x1a; }
 
 /// Anything that starts like a number, and the words that C would read as one.
 bool looks_like_number(std::string_view text) {

@@ -5,6 +5,7 @@
 #include <systemc>
 
 #include "cells/probe.hpp"
+#include "model/input_file.hpp"
 #include "testbench/cell/scenarios.hpp"
 #include "testbench/golden/cell_bench.hpp"
 #include "testbench/raycell/commands.hpp"
@@ -55,10 +56,11 @@ RenderOptions recorded_options(const GoldenFile& file) {
 }
 
 Scenario scenario_of_file(const std::string& path) {
+    const std::string fault = input_fault(path);
+    if (!fault.empty())
+        throw UsageError(path + ": " + fault +
+                         "; expected golden vectors, as 'raycell render --golden' writes them");
     std::ifstream in(path);
-    if (!in)
-        throw UsageError(
-            path + ": can't be read; expected golden vectors, as 'raycell render --golden' writes them");
     GoldenFile file = read_golden(in, path);
     const RenderOptions options = recorded_options(file);
     Scenario scenario;

@@ -2,11 +2,14 @@
 
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
-#include "model/array_file.hpp"
+#include "model/array_check.hpp"
+#include "model/input_file.hpp"
 #include "testbench/raycell/new_file.hpp"
 
 namespace raycell {
@@ -17,8 +20,11 @@ struct Closer {
 };
 
 LoadedArray read(const std::string& path) {
-    const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rb"));
-    if (!file) throw UsageError("--load-array: " + path + ": can't be read; expected a file of --save-array");
+    std::string fault = input_fault(path);
+    const std::unique_ptr<std::FILE, Closer> file(fault.empty() ? std::fopen(path.c_str(), "rb") : nullptr);
+    if (fault.empty() && !file) fault = std::string("can't be opened: ") + std::strerror(errno);
+    if (!fault.empty())
+        throw UsageError("--load-array: " + path + ": " + fault + "; expected a file of --save-array");
     return read_array(file.get(), "--load-array: " + path);
 }
 
@@ -64,6 +70,7 @@ ArrayFiles::ArrayFiles(const RenderOptions& options, const CellScene& scene) : s
         throw UsageError("--load-array: " + options.load_array +
                          ": is of another scene, view or size, or was loaded with other voxels or words; "
                          "expected the scene and the settings that it was saved with");
+    check_array(array, scene, options.picture, "--load-array: " + options.load_array);
     if (array.timing != loading_timing(options.machine))
         std::cerr << options.load_array
                   << ": warning: it was loaded with other buffers, links or costs: cycles and hash of the "

@@ -2,10 +2,10 @@
 
 #include <toml++/toml.h>
 
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "model/input_file.hpp"
 #include "testbench/raycell/options.hpp"
 
 namespace raycell {
@@ -101,11 +101,9 @@ std::string configuration_named(const std::vector<std::string>& words) {
 
 std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app,
                                              const CLI::App* other) {
-    std::error_code ignored;
+    const std::string fault = input_fault(path);
+    if (!fault.empty()) throw UsageError(path + ": " + fault + "; expected a configuration file");
     std::ifstream file(path, std::ios::binary);
-    if (!std::filesystem::is_regular_file(path, ignored) || !file) {
-        throw UsageError(path + ": can't be read; expected a configuration file");
-    }
     std::ostringstream text;
     text << file.rdbuf();
     return arguments_from_text(text.str(), path, app, other);

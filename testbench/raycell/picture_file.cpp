@@ -17,6 +17,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "model/input_file.hpp"
 #include "testbench/raycell/new_file.hpp"
 
 namespace raycell {
@@ -169,6 +170,11 @@ struct PngImage : png_image {
     PngImage& operator=(const PngImage&) = delete;
 };
 
+void check_readable(const std::string& path) {
+    const std::string fault = input_fault(path);
+    if (!fault.empty()) fail("read", path, fault);
+}
+
 }  // namespace
 
 void write_exr(const Picture& picture, const std::string& path) {
@@ -184,6 +190,7 @@ void write_exr(const Picture& picture, const std::string& path) {
 }
 
 Picture read_exr(const std::string& path, std::vector<std::string>* absent) {
+    check_readable(path);
     std::unique_ptr<Imf::InputFile> file;
     try {
         file = std::make_unique<Imf::InputFile>(path.c_str(), 0);
@@ -216,6 +223,7 @@ void write_png(const Picture& picture, const std::string& path) {
 }
 
 Picture read_png(const std::string& path) {
+    check_readable(path);
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file) fail("read", path, reason_of(errno));
     PngImage image;

@@ -31,8 +31,7 @@ PictureSettings picture_of(const RenderOptions& options, const SizeSetting& sett
     picture.normals = setting.normals;
     picture.shadows = setting.shadows;
     picture.depth_levels = setting.depth_levels;
-    picture.numbers.arithmetic = setting.exact() ? Numbers::exact : Numbers::fixed;
-    if (!setting.exact()) picture.numbers.word_bits = setting.word_bits;
+    picture.numbers.word_bits = setting.word_bits;
     return picture;
 }
 
@@ -119,9 +118,8 @@ class ArrayModel : public SizeModel {
         if (!shows_progress(options_)) return;
         SizeTrial trial;
         trial.setting = setting;
-        const std::string words = setting.exact() ? "a bound in exact arithmetic" : words_for(report(trial));
         const std::lock_guard<std::mutex> lock(mutex_);
-        std::cerr << "\r\033[Ksize: run " << ++runs_ << ", " << words << std::flush;
+        std::cerr << "\r\033[Ksize: run " << ++runs_ << ", " << words_for(report(trial)) << std::flush;
     }
 
     const RenderOptions& options_;

@@ -15,11 +15,8 @@ std::string decimals(const char* format, double value) {
     return text;
 }
 
-/// A number without the quotes that words have in JSON, and `absent` for null.
-std::string plain(const Json& value, const std::string& absent) {
-    if (value.is_null()) return absent;
-    return value.is_string() ? value.get<std::string>() : value.dump();
-}
+/// Without the quotes that words have in JSON.
+std::string plain(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
 /// Markdown, padded so that it reads as it stands; the first `left` columns are words.
 std::string aligned(const std::vector<Row>& rows, std::size_t left) {
@@ -63,17 +60,11 @@ Json report(const SizeTrial& trial) {
     Json json = {{"hit", words["hit"]},
                  {"normals", words["normals"]},
                  {"shadows", words["shadows"]},
-                 {"depth_levels", trial.setting.depth_levels}};
-    json["word_bits"] = nullptr;
-    json["bits_per_voxel"] = nullptr;
-    json["bits_fullest_cell"] = nullptr;
-    json["bits_total"] = nullptr;
-    if (!trial.setting.exact()) {
-        json["word_bits"] = trial.setting.word_bits;
-        json["bits_per_voxel"] = double(storage.bits) / double(std::max<std::uint64_t>(storage.voxels, 1));
-        json["bits_fullest_cell"] = storage.max_cell_bits;
-        json["bits_total"] = storage.bits;
-    }
+                 {"depth_levels", trial.setting.depth_levels},
+                 {"word_bits", trial.setting.word_bits}};
+    json["bits_per_voxel"] = double(storage.bits) / double(std::max<std::uint64_t>(storage.voxels, 1));
+    json["bits_fullest_cell"] = storage.max_cell_bits;
+    json["bits_total"] = storage.bits;
     json["voxels_fullest_cell"] = storage.max_voxels;
     json["psnr_db"] = trial.accuracy.psnr_db;
     json["wrong_hit_percent"] = trial.accuracy.wrong_hit_percent;
@@ -85,12 +76,11 @@ std::string tried_table(const Json& tried) {
     std::vector<Row> rows = {{"hit", "normals", "shadows", "levels", "word bits", "bits per voxel",
                               "bits of fullest cell", "dB", "wrong hits %", "meets"}};
     for (const Json& t : tried) {
-        const Json& bits = t["bits_per_voxel"];
-        rows.push_back(
-            {t["hit"], t["normals"], t["shadows"], t["depth_levels"].dump(), plain(t["word_bits"], "exact"),
-             bits.is_null() ? "-" : decimals("%.0f", bits.get<double>()), plain(t["bits_fullest_cell"], "-"),
-             decimals("%.2f", t["psnr_db"].get<double>()),
-             decimals("%.3f", t["wrong_hit_percent"].get<double>()), t["meets"].get<bool>() ? "yes" : "no"});
+        rows.push_back({t["hit"], t["normals"], t["shadows"], t["depth_levels"].dump(), t["word_bits"].dump(),
+                        decimals("%.0f", t["bits_per_voxel"].get<double>()), t["bits_fullest_cell"].dump(),
+                        decimals("%.2f", t["psnr_db"].get<double>()),
+                        decimals("%.3f", t["wrong_hit_percent"].get<double>()),
+                        t["meets"].get<bool>() ? "yes" : "no"});
     }
     return aligned(rows, 3);
 }
@@ -102,7 +92,7 @@ std::string tried_csv(const Json& tried) {
     for (const Json& trial : tried) {
         std::string line;
         for (const auto& [key, value] : trial.items()) {
-            line += (line.empty() ? "" : ",") + plain(value, key == "word_bits" ? "exact" : "");
+            line += (line.empty() ? "" : ",") + plain(value);
         }
         text += line + "\n";
     }

@@ -13,7 +13,7 @@ namespace raycell {
 /// Every option of `raycell render` with its value, for to_toml().
 nlohmann::ordered_json render_configuration(RenderOptions options);
 
-/// A trial's setting, storage and accuracy; what bits mean nothing for (exact arithmetic) is null.
+/// A trial's setting, storage and accuracy.
 nlohmann::ordered_json report(const SizeTrial& trial);
 
 /// The tried settings, as report() made them: a table for people, and one for scripts.

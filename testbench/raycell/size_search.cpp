@@ -44,8 +44,7 @@ void SizeSearch::run_all(const std::vector<SizeSetting>& settings) {
                  [&](int i) { trials[std::size_t(i)] = model_.run(fresh[std::size_t(i)]); });
     for (SizeTrial& trial : trials) {
         trial.meets = goal_.met_by(trial.accuracy);
-        const bool machine = trial.meets && !trial.setting.exact();
-        if (machine && (!best_ || cost_of(trial.storage) < cost_of(tried_[*best_].storage))) {
+        if (trial.meets && (!best_ || cost_of(trial.storage) < cost_of(tried_[*best_].storage))) {
             best_ = tried_.size();
         }
         tried_.push_back(std::move(trial));
@@ -57,27 +56,27 @@ const SizeTrial& SizeSearch::trial(const SizeSetting& setting) {
     return tried_[index_.at(setting)];
 }
 
-/// The hit tests that exact arithmetic, linear normals and a shadow ray per hit bring near the goal.
+/// The hit tests that the longest words, linear normals and a shadow ray per hit bring near the goal.
 std::vector<SizeSearch::Combination> SizeSearch::reachable_rungs() {
-    std::vector<SizeSetting> bounds;
+    std::vector<SizeSetting> longest;
     for (const HitTest hit :
          {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge}) {
         for (const int levels : levels_) {
-            bounds.push_back({hit, Normals::linear, Shadows::per_hit, levels, 0});
+            longest.push_back({hit, Normals::linear, Shadows::per_hit, levels, most_word_bits});
             if (!compares_levels(hit)) break;
         }
     }
-    run_all(bounds);
+    run_all(longest);
     std::vector<Combination> rungs;
-    for (const SizeSetting& bound : bounds) {
-        const SizeTrial& run = trial(bound);
+    for (const SizeSetting& setting : longest) {
+        const SizeTrial& run = trial(setting);
         if (!goal_.nearly_met_by(run.accuracy)) continue;
-        const bool known = !rungs.empty() && rungs.back().setting.hit == bound.hit;
-        if (!known) rungs.push_back({bound, {}});
+        const bool known = !rungs.empty() && rungs.back().setting.hit == setting.hit;
+        if (!known) rungs.push_back({setting, {}});
         Combination& rung = rungs.back();
-        rung.levels.push_back(bound.depth_levels);
-        if (run.accuracy.psnr_db > trial(rung.setting).accuracy.psnr_db) rung.setting = bound;
-        if (!compares_levels(bound.hit)) rung.levels = levels_;
+        rung.levels.push_back(setting.depth_levels);
+        if (run.accuracy.psnr_db > trial(rung.setting).accuracy.psnr_db) rung.setting = setting;
+        if (!compares_levels(setting.hit)) rung.levels = levels_;
     }
     return rungs;
 }
@@ -95,9 +94,9 @@ std::vector<SizeSearch::Combination> SizeSearch::reachable_combinations() {
             }
         }
     }
-    std::vector<SizeSetting> bounds;
-    for (const Combination& combination : all) bounds.push_back(combination.setting);
-    run_all(bounds);
+    std::vector<SizeSetting> longest;
+    for (const Combination& combination : all) longest.push_back(combination.setting);
+    run_all(longest);
     const auto beyond = [this](const Combination& c) {
         return !goal_.nearly_met_by(trial(c.setting).accuracy);
     };
@@ -223,22 +222,18 @@ std::optional<SizeTrial> SizeSearch::find() {
             if (levels != c.setting.depth_levels) search_level(c, levels);
         }
     }
-    if (!best_) {
-        reach_in_words();
-        return std::nullopt;
-    }
+    if (!best_) try_all_words();
+    if (!best_) return std::nullopt;
     step_down();
     return tried_[*best_];
 }
 
-/// After a search in vain: how far the longest words get where exact arithmetic got farthest.
-void SizeSearch::reach_in_words() {
-    const SizeTrial* farthest = nullptr;
-    for (const SizeTrial& t : tried_) {
-        if (!t.setting.exact()) continue;
-        if (!farthest || t.accuracy.psnr_db > farthest->accuracy.psnr_db) farthest = &t;
-    }
-    run_all({with_words(farthest->setting, most_word_bits)});
+/// After a search in vain, before it is called so: shorter words may be lucky where the longest came nearest.
+void SizeSearch::try_all_words() {
+    std::vector<SizeSetting> settings;
+    for (int words = most_word_bits - 1; words >= least_word_bits; --words)
+        settings.push_back(with_words(nearest().setting, words));
+    run_all(settings);
 }
 
 const SizeTrial& SizeSearch::nearest() const {
@@ -252,7 +247,7 @@ const SizeTrial& SizeSearch::nearest() const {
     };
     const SizeTrial* nearest = nullptr;
     for (const SizeTrial& t : tried_) {
-        if (!t.setting.exact() && (!nearest || rank(t) > rank(*nearest))) nearest = &t;
+        if (!nearest || rank(t) > rank(*nearest)) nearest = &t;
     }
     return *nearest;
 }

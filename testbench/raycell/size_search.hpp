@@ -25,9 +25,8 @@ struct SizeSetting {
     Normals normals = Normals::linear;
     Shadows shadows = Shadows::per_hit;
     int depth_levels = 1024;
-    int word_bits = 20;  ///< 0: exact arithmetic, no machine but a bound for those of words
+    int word_bits = 20;
 
-    bool exact() const { return word_bits == 0; }
     bool operator<(const SizeSetting& o) const {
         return std::tie(hit, normals, shadows, depth_levels, word_bits) <
                std::tie(o.hit, o.normals, o.shadows, o.depth_levels, o.word_bits);
@@ -70,11 +69,11 @@ class SizeModel {
     virtual SizeTrial run(const SizeSetting& setting) const = 0;
 };
 
-/// Coarse to fine: hit tests, then normals and shadows in exact arithmetic, then word bits, then depth
-/// levels. Only what could be smaller than the smallest found so far is run. Rests on three things that are
-/// nearly so (SizeGoal::nearly_met_by): more word bits are not worse; exact arithmetic is not worse than
-/// words; and at rungs with a plane more depth levels are not worse. Whatever becomes of that, nothing one
-/// step smaller than the machine found meets the goal. The settings tried, and their order, depend on the
+/// Coarse to fine: hit tests, then normals and shadows with the longest words, then word bits, then depth
+/// levels. Only what could be smaller than the smallest found so far is run. Rests on two things that are
+/// nearly so (SizeGoal::nearly_met_by): more word bits are not worse; and at rungs with a plane more depth
+/// levels are not worse. Whatever becomes of that, the machine found is the smallest of all that were run and
+/// met the goal, and nothing one step smaller meets it. The settings tried, and their order, depend on the
 /// model alone.
 class SizeSearch {
   public:
@@ -84,16 +83,16 @@ class SizeSearch {
     /// The smallest setting that meets the goal, if any does. Call once.
     std::optional<SizeTrial> find();
 
-    /// Every run, in order; after a search in vain at least one of words.
+    /// Every run, in order.
     const std::vector<SizeTrial>& tried() const { return tried_; }
-    /// Of the runs in words: the one nearest to the goal.
+    /// The run nearest to the goal.
     const SizeTrial& nearest() const;
 
   private:
     /// A hit test with its normals and shadows, which may meet the goal as far as is known.
     struct Combination {
-        SizeSetting setting;                ///< with the depth levels that suit it best in exact arithmetic
-        std::vector<int> levels;            ///< worth trying beside those, most first
+        SizeSetting setting;      ///< with the longest words, and the depth levels that suit it best then
+        std::vector<int> levels;  ///< worth trying beside those, most first
         int least_words = least_word_bits;  ///< shorter ones missed the goal clearly with more levels
     };
 
@@ -108,7 +107,7 @@ class SizeSearch {
     void search_level(Combination& combination, int levels);
     std::vector<SizeSetting> steps_down(const SizeSetting& setting) const;
     void step_down();
-    void reach_in_words();
+    void try_all_words();
 
     const SizeModel& model_;
     const SizeGoal goal_;

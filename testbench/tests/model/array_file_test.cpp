@@ -1,11 +1,14 @@
 // Loaded arrays as files: every bit comes back, and damage is found.
 #include "model/array_file.hpp"
 
+#include <cmath>
 #include <cstdio>
+#include <functional>
 #include <memory>
 
 #include "../property.hpp"
 #include "../truth/hand_made.hpp"
+#include "model/array_check.hpp"
 #include "model/loading.hpp"
 
 namespace raycell {
@@ -102,6 +105,129 @@ TEST(ArrayFile, DamageIsFoundWhereverItIs) {
         EXPECT_THROW(array_from(damaged), std::runtime_error) << "at " << at;
     }
     EXPECT_THROW(array_from(""), std::runtime_error);
+}
+
+/// An array with something of everything at rung `edge`: the cell and voxel with most edges come first.
+struct Sample {
+    CellScene scene;
+    PictureSettings settings;
+    LoadedArray array;
+    std::size_t cell = 0;
+    std::size_t voxel = 0;
+};
+Sample sample() {
+    Sample s;
+    s.scene = hand_made::cube(4, 4, 6);
+    s.scene.frame.depth_levels = 12;
+    const auto object = hand_made::add_object(s.scene, hand_made::matt(0.5));
+    hand_made::add_rectangle(s.scene, object, {0.3, 0.4, 2}, {3.1, 0.2, 0.5}, {-0.2, 2.9, 0.7});
+    hand_made::add_rectangle(s.scene, object, {0.1, 0.2, 4}, {3.5, 0, 0}, {0, 3.5, 0});
+    s.settings.depth_levels = s.scene.frame.depth_levels;
+    s.settings.display = Display::gouraud;
+    s.settings.voxel_capacity = 8;
+    s.array = array_of(s.scene, s.settings);
+    std::size_t most = 0;
+    for (std::size_t c = 0; c < s.array.cells.size(); ++c) {
+        const CellStore& cell = s.array.cells[c];
+        for (std::size_t v = 0; v < cell.voxels.size(); ++v) {
+            if (cell.voxels[v].edge_count <= most) continue;
+            most = cell.voxels[v].edge_count;
+            s.cell = c;
+            s.voxel = v;
+        }
+    }
+    EXPECT_GE(most, 2u);
+    return s;
+}
+
+/// What check_array says of the sample after a change that is written with a checksum of its own.
+std::string said_of(const std::function<void(Sample&, CellStore&, Voxel&)>& change) {
+    Sample s = sample();
+    CellStore& cell = s.array.cells[s.cell];
+    change(s, cell, cell.voxels[s.voxel]);
+    try {
+        check_array(array_from(bytes_of(s.array)), s.scene, s.settings, "array");
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(ArrayCheck, TakesEveryArrayThatWasLoaded) {
+    EXPECT_EQ(said_of([](Sample&, CellStore&, Voxel&) {}), "");
+    for (const std::uint64_t seed : property::seeds(1, 120)) {
+        SCOPED_TRACE(property::rerun(seed));
+        PictureSettings settings;
+        settings.depth_levels = 12;
+        settings.hit = HitTest(seed % 5);
+        settings.normals = seed % 2 ? Normals::linear : Normals::voxel;
+        if (seed % 3 == 0) settings.numbers.arithmetic = Numbers::exact;
+        settings.numbers.word_bits = 8 + int(seed % 25);
+        if (seed % 7 == 0) settings.voxel_capacity = 2;
+        if (seed % 4 == 0) settings.display = Display::gouraud;
+        const CellScene scene = scene_of(seed);
+        EXPECT_NO_THROW(check_array(array_of(scene, settings), scene, settings, "array"));
+    }
+}
+
+TEST(ArrayCheck, RefusesEveryFieldThatTracingCannotRelyOnThoughItsChecksumIsRight) {
+    const double nan = std::nan("");
+    const double infinite = INFINITY;
+    const struct {
+        const char* said;
+        std::function<void(Sample&, CellStore&, Voxel&)> change;
+    } cases[] = {
+        {"object 1; expected less than 1", [](Sample&, CellStore&, Voxel& v) { v.object = 1; }},
+        {"object 4294967295", [](Sample&, CellStore&, Voxel& v) { v.object = ~0u; }},
+        {"polygon 2; expected less than 2", [](Sample&, CellStore&, Voxel& v) { v.polygon = 2; }},
+        {"levels -1 to", [](Sample&, CellStore&, Voxel& v) { v.near_level = -1; }},
+        {"expected an interval from 0 to 12", [](Sample&, CellStore&, Voxel& v) { v.far_level = 13; }},
+        {"levels 3 to 3", [](Sample&, CellStore&, Voxel& v) { v.near_level = v.far_level = 3; }},
+        {"near is not finite", [=](Sample&, CellStore&, Voxel& v) { v.near = nan; }},
+        {"far is not finite", [=](Sample&, CellStore&, Voxel& v) { v.far = infinite; }},
+        {"base is not finite", [=](Sample&, CellStore&, Voxel& v) { v.base = nan; }},
+        {"near is beyond far", [](Sample&, CellStore&, Voxel& v) { v.near = v.far + 1; }},
+        {"is no word", [](Sample&, CellStore&, Voxel& v) { v.near = 1e-20; }},
+        {"is no word", [](Sample&, CellStore&, Voxel& v) { v.far = 1e300; }},
+        {"plane is not finite", [=](Sample&, CellStore&, Voxel& v) { v.plane.n.x = nan; }},
+        {"plane is not finite", [=](Sample&, CellStore&, Voxel& v) { v.plane.c = infinite; }},
+        {"dropped axis 3; expected at most 2", [](Sample&, CellStore&, Voxel& v) { v.drop = 3; }},
+        {"parallel to its dropped axis", [](Sample&, CellStore&, Voxel& v) { v.plane.n[v.drop] = 0; }},
+        {"normal is not finite", [=](Sample&, CellStore&, Voxel& v) { v.normal.base.y = nan; }},
+        {"normal is not finite", [=](Sample&, CellStore&, Voxel& v) { v.normal.du.z = nan; }},
+        {"normal is not finite", [=](Sample&, CellStore&, Voxel& v) { v.normal.dv.x = nan; }},
+        {"point is not finite", [=](Sample&, CellStore&, Voxel& v) { v.point.z = nan; }},
+        {"area is no area", [](Sample&, CellStore&, Voxel& v) { v.area = -1; }},
+        {"area is no area", [=](Sample&, CellStore&, Voxel& v) { v.area = nan; }},
+        {"end of the window 33", [](Sample&, CellStore&, Voxel& v) { v.window[1] = 33; }},
+        {"end of the window 0", [](Sample&, CellStore&, Voxel& v) { v.window[3] = 0; }},
+        {"beginning of the window", [](Sample&, CellStore&, Voxel& v) { v.window[2] = v.window[3]; }},
+        {"first edge", [](Sample&, CellStore&, Voxel& v) { v.first_edge = ~0u; }},
+        {"first edge", [](Sample&, CellStore& c, Voxel& v) { v.first_edge = std::uint32_t(c.edges.size()); }},
+        {"number of edges", [](Sample&, CellStore&, Voxel& v) { v.edge_count = ~0u; }},
+        {"number of pieces 0", [](Sample&, CellStore&, Voxel& v) { v.pieces = 0; }},
+        {"number of pieces", [](Sample&, CellStore&, Voxel& v) { v.pieces = v.edge_count + 1; }},
+        {"number of pieces", [](Sample&, CellStore&, Voxel& v) { v.edge_count = 0; }},
+        {"piece of an edge", [](Sample&, CellStore& c, Voxel& v) { c.edges[v.first_edge].piece = v.pieces; }},
+        {"pieces are not in order",
+         [](Sample&, CellStore& c, Voxel& v) { v.pieces = 2, c.edges[v.first_edge].piece = 1; }},
+        {"edge is not finite", [=](Sample&, CellStore& c, Voxel& v) { c.edges[v.first_edge].b = nan; }},
+        {"number of edges", [](Sample&, CellStore& c, Voxel&) { c.edges.resize(1); }},
+        {"number of intensities", [](Sample&, CellStore& c, Voxel&) { c.intensities.pop_back(); }},
+        {"number of intensities", [](Sample&, CellStore& c, Voxel&) { c.intensities.emplace_back(); }},
+        {"intensity is not finite", [=](Sample&, CellStore& c, Voxel&) { c.intensities[0].x = nan; }},
+        {"number of voxels 9; expected at most 8",
+         [](Sample&, CellStore& c, Voxel& v) {
+             const Voxel same = v;
+             c.voxels.resize(9, same), c.intensities.resize(9);
+         }},
+    };
+    for (const auto& one : cases) {
+        SCOPED_TRACE(one.said);
+        const std::string said = said_of(one.change);
+        EXPECT_NE(said.find(one.said), std::string::npos) << said;
+        EXPECT_EQ(said.rfind("array: is damaged: cell ", 0), 0u) << said;
+    }
 }
 
 /// Every setting that voxels depend on, changed alone.

@@ -144,6 +144,53 @@ TEST(Triangulation, AreasAddUpAndNoTriangleTurnsTheOtherWay) {
     }
 }
 
+/// Ear clipping the plain way: every corner in turn, each against all others.
+std::vector<std::array<std::size_t, 3>> plain_triangles(const std::vector<dvec2>& p) {
+    const auto area = [&](std::size_t a, std::size_t b, std::size_t c) {
+        const dvec2 q = p[b] - p[a];
+        const dvec2 r = p[c] - p[a];
+        return q.x * r.y - q.y * r.x;
+    };
+    std::vector<std::size_t> rest;
+    for (std::size_t i = 0; i < p.size(); ++i) rest.push_back(i);
+    std::vector<std::array<std::size_t, 3>> triangles;
+    const auto corner = [&](std::size_t k) {
+        return std::array<std::size_t, 3>{rest[(k + rest.size() - 1) % rest.size()], rest[k],
+                                          rest[(k + 1) % rest.size()]};
+    };
+    const auto is_ear = [&](std::size_t k) {
+        const auto [a, b, c] = corner(k);
+        if (!(area(a, b, c) > 0)) return false;
+        for (const std::size_t i : rest) {
+            if (p[i] == p[a] || p[i] == p[b] || p[i] == p[c]) continue;
+            if (area(a, b, i) >= 0 && area(b, c, i) >= 0 && area(c, a, i) >= 0) return false;
+        }
+        return true;
+    };
+    while (rest.size() > 3) {
+        std::size_t ear = 0;
+        while (ear < rest.size() && !is_ear(ear)) ++ear;
+        if (ear == rest.size()) ear = 0;
+        triangles.push_back(corner(ear));
+        rest.erase(rest.begin() + std::ptrdiff_t(ear));
+    }
+    triangles.push_back({rest[0], rest[1], rest[2]});
+    return triangles;
+}
+
+TEST(Triangulation, TakesTheFirstEarOfThePlainAlgorithmEveryTime) {
+    for (const std::uint64_t seed : property::seeds(6000, 600)) {
+        SCOPED_TRACE(property::rerun(seed));
+        Random random(seed);
+        std::vector<dvec2> outline = random.chance(0.5) ? shapes::star(random, random.whole(3, 80), 5)
+                                                        : shapes::comb(random.whole(2, 20), 7.5);
+        if (random.chance(0.4)) {  // anyhow: crosses and repeats itself
+            for (dvec2& p : outline) p = glm::round(dvec2(random.uniform(-4, 4), random.uniform(-4, 4)));
+        }
+        ASSERT_EQ(triangulate(shapes::lift(outline, {}, {0, 0, 0}), {0, 0, 1}), plain_triangles(outline));
+    }
+}
+
 TEST(Triangulation, AnOutlineThatCrossesItselfEnds) {
     const std::vector<dvec3> bow = {{0, 0, 0}, {4, 4, 0}, {4, 0, 0}, {0, 4, 0}, {2, 5, 0}};
     EXPECT_EQ(triangulate(bow, {0, 0, 1}).size(), 3u);

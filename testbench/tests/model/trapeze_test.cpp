@@ -117,5 +117,147 @@ TEST(Trapezes, ARectangleIsOneAndATriangleAtMostTwo) {
               1u);
 }
 
+/// Trapezes as corners alone, found the plain way: for every slab between two vertices all sides are asked.
+class PlainCutter {
+  public:
+    using Corners = std::vector<dvec3>;
+    static std::vector<Corners> cut(const Polygon& polygon) {
+        PlainCutter cutter(polygon.vertices, sweep_axis(polygon.vertices));
+        cutter.along_ =
+            glm::cross(polygon.plane.n, dvec3(cutter.axis_ == 0, cutter.axis_ == 1, cutter.axis_ == 2));
+        cutter.run();
+        return cutter.trapezes_;
+    }
+
+  private:
+    struct Side {
+        dvec3 a;
+        dvec3 b;
+        bool operator==(const Side& o) const { return a == o.a && b == o.b; }
+    };
+    struct Open {
+        Side left;
+        Side right;
+        double s0;
+        double s1;
+    };
+    PlainCutter(const std::vector<dvec3>& outline, int axis) : v_(outline), axis_(axis) {}
+
+    static int sweep_axis(const std::vector<dvec3>& outline) {
+        dvec3 low = outline.front();
+        dvec3 high = outline.front();
+        for (const dvec3& p : outline) low = glm::min(low, p), high = glm::max(high, p);
+        const dvec3 extent = high - low;
+        if (extent.y >= 1.0 / 64) return 1;
+        if (extent.z >= extent.y && extent.z >= extent.x) return 2;
+        return extent.y >= extent.x ? 1 : 0;
+    }
+    dvec3 point_at(const Side& side, double s) const {
+        const bool forward = side.a[axis_] < side.b[axis_];
+        const dvec3& from = forward ? side.a : side.b;
+        const dvec3& to = forward ? side.b : side.a;
+        if (s == from[axis_]) return from;
+        if (s == to[axis_]) return to;
+        dvec3 p = from + (to - from) * ((s - from[axis_]) / (to[axis_] - from[axis_]));
+        p[axis_] = s;
+        return p;
+    }
+    void run() {
+        std::vector<double> levels;
+        for (const dvec3& p : v_) levels.push_back(p[axis_]);
+        std::sort(levels.begin(), levels.end());
+        double s0 = levels.front();
+        for (const double s1 : levels) {
+            if (s1 - s0 < 1e-10) continue;
+            slab(s0, s1);
+            s0 = s1;
+        }
+        for (const Open& open : open_) close(open);
+    }
+    void slab(double s0, double s1) {
+        std::vector<std::pair<double, Side>> crossings;
+        const double middle = 0.5 * (s0 + s1);
+        for (std::size_t i = 0; i < v_.size(); ++i) {
+            const Side side{v_[i], v_[(i + 1) % v_.size()]};
+            if ((side.a[axis_] <= middle) == (side.b[axis_] <= middle)) continue;
+            crossings.emplace_back(glm::dot(along_, point_at(side, middle)), side);
+        }
+        std::stable_sort(crossings.begin(), crossings.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::vector<Open> next;
+        for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+            if (!(crossings[i + 1].first > crossings[i].first)) continue;
+            Open open{crossings[i].second, crossings[i + 1].second, s0, s1};
+            const auto before = std::find_if(open_.begin(), open_.end(), [&](const Open& o) {
+                return o.left == open.left && o.right == open.right;
+            });
+            if (before != open_.end()) {
+                open.s0 = before->s0;
+                open_.erase(before);
+            }
+            next.push_back(open);
+        }
+        for (const Open& open : open_) close(open);
+        open_ = next;
+    }
+    void close(const Open& open) {
+        Corners corners;
+        for (const dvec3& p : {point_at(open.left, open.s0), point_at(open.right, open.s0),
+                               point_at(open.right, open.s1), point_at(open.left, open.s1)}) {
+            if (corners.empty() || p != corners.back()) corners.push_back(p);
+        }
+        if (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
+        if (corners.size() >= 3) trapezes_.push_back(corners);
+    }
+
+    const std::vector<dvec3>& v_;
+    int axis_;
+    dvec3 along_{0, 0, 0};
+    std::vector<Open> open_;
+    std::vector<Corners> trapezes_;
+};
+
+/// Stars, combs, and outlines that cross, touch or repeat themselves.
+std::vector<dvec2> any_outline(Random& random) {
+    switch (random.whole(0, 3)) {
+        case 0:
+            return shapes::star(random, random.whole(3, 150), std::pow(10, random.uniform(-1, 1.3)));
+        case 1:
+            return shapes::comb(random.whole(2, 30), 7.5);
+        default: {
+            const bool grid = random.chance(0.5);
+            std::vector<dvec2> outline(std::size_t(random.whole(3, 60)));
+            for (dvec2& p : outline) {
+                p = {random.uniform(-5, 5), random.uniform(-5, 5)};
+                if (grid) p = glm::round(p);
+            }
+            return outline;
+        }
+    }
+}
+
+TEST(Trapezes, AreThoseOfThePlainSweepBitForBitAndInItsOrder) {
+    for (const std::uint64_t seed : property::seeds(5000, 1500)) {
+        SCOPED_TRACE(property::rerun(seed));
+        Random random(seed);
+        const shapes::Axes axes =
+            random.chance(0.2) ? shapes::Axes() : shapes::attitude(random, int(seed % 6));
+        auto outline = shapes::lift(any_outline(random), axes, {20, 20, 25});
+        if (random.chance(0.4)) {  // clipping leaves bridges
+            const double right = random.uniform(18, 26);
+            outline = clip_to_box(outline, {{16, 17, 22}, {right, random.uniform(18, 26), 28}});
+        }
+        if (outline.size() < 3 || !(glm::length(newell(outline)) > 0)) continue;
+        const Polygon polygon = make_polygon(1, 2, outline);
+        const auto plain = PlainCutter::cut(polygon);
+        const auto trapezes = precompute(polygon, exact_arithmetic());
+        ASSERT_EQ(trapezes.size(), plain.size());
+        for (std::size_t i = 0; i < plain.size(); ++i) {
+            ASSERT_EQ(std::size_t(trapezes[i].corner_count), plain[i].size());
+            for (std::size_t k = 0; k < plain[i].size(); ++k) ASSERT_EQ(trapezes[i].corners[k], plain[i][k]);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace raycell

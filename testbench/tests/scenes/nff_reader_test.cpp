@@ -129,6 +129,14 @@ TEST(NffReader, CountsLinesAlikeForAnyLineEnd) {
     }
 }
 
+TEST(NffReader, TakesCtrlZForWhiteSpace) {
+    for (const std::string end : {"\x1a", "\n\x1a", "\n\x1a\x1a\n"}) {
+        expect_silent(start + "s 0 0 0 1" + end);
+        EXPECT_EQ(read(start + "s 0 0 0 1" + end).scene.primitives.size(), 1u);
+    }
+    expect_error(start + "s 0 0 0 \x1a", 11, "the file ends");
+}
+
 TEST(NffReader, RejectsATextWithoutEntities) {
     expect_error("", 1, "no entity");
     expect_error("\n\n  \t\r\n", 1, "no entity");

@@ -81,10 +81,6 @@ TEST(ObjReader, RejectsIndicesThatNameNothing) {
     expect_error(square + "f 0 1 2\n", 5, "index 0");
     expect_error(square + "f 1 2 5\n", 5, "vertex 5");
     expect_error(square + "f -1 -2 -9\n", 5, "vertex -9");
-    expect_error(square + "vn 0 0 1\nf 1//1 2//1 3//2\n", 6, "normal 2");
-    expect_error(square + "f 1//-1 2//-1 3//-1\n", 5, "normal -1");
-    expect_error(square + "f 1/1 2/1 3/1\n", 5, "texture");
-    expect_error(square + "vt 0 0\nf 1/-2 2/1 3/1\n", 6, "texture");
     expect_error(square + "f 1 2 99999999999\n", 5, "beyond");
     expect_error(square + "f 1 2 -2147483648\n", 5, "beyond");
     expect_error(square + "f 1 2 2147483647\n", 5, "2147483647");
@@ -92,11 +88,10 @@ TEST(ObjReader, RejectsIndicesThatNameNothing) {
 }
 
 TEST(ObjReader, RejectsMalformedFaces) {
-    for (const char* face : {"1 2 x", "1 2 3x", "1.5 2 3", "1/ 2 3", "1//  2 3", "1/1/1/1 2 3", "/1 2 3",
-                             "1 2 +3", "1/x/1 2 3"}) {
+    for (const char* face :
+         {"1 2 x", "1 2 3x", "1.5 2 3", "/1 2 3", "1 2 +3", "//1 2 3", "1 2 3-", "- 2 3"}) {
         expect_error(square + "vt 0 0\nvn 0 0 1\nf " + face + "\n", 7, "'f'");
     }
-    for (const char* face : {"", " 1", " 1 2"}) expect_error(square + "f" + face + "\n", 5, "corners");
 }
 
 TEST(ObjReader, AcceptsFacesBeforeTheirVertices) {
@@ -106,13 +101,8 @@ TEST(ObjReader, AcceptsFacesBeforeTheirVertices) {
 TEST(ObjReader, RejectsNumbersThatAreNone) {
     for (const char* bad : {"nan", "-inf", "1e400", "1e31", "0x1", "1,5", "1.0abc", "1e", "x"}) {
         expect_error(std::string("v 0 0 0\nv 0 ") + bad + " 0\n", 2, bad);
-        expect_error(std::string("vn 0 ") + bad + " 0\n", 1, bad);
-        expect_error(std::string("v 0 0 0 ") + bad + "\n", 1, bad);
     }
     expect_error("v 1 2\n", 1, "'v' has 2");
-    expect_error("v 1 2 3 4 5\n", 1, "'v' has 5");
-    expect_error("v 1 2 3 4 5 6 7 8\n", 1, "'v' has 8");
-    expect_error("vn 1 2\n", 1, "'vn' has 2");
 }
 
 TEST(ObjReader, ReadsPlaceAndIgnoresWeightsAndColours) {
@@ -135,6 +125,7 @@ TEST(ObjReader, WarnsOfStatementsThatAreNotDrawn) {
     const Read r = read(square + "l 1 2\np 1\np 2\ncurv 0 1 1 2\nf 1 2 3\n");
     EXPECT_EQ(r.diagnostics.warning_count(), 4u);
     EXPECT_EQ(r.diagnostics.messages().size(), 3u);
+    EXPECT_EQ(r.scene.primitives.size(), 1u);
 }
 
 TEST(ObjReader, HandsNormalsOverOnlyIfAllCornersHaveOne) {
@@ -144,7 +135,7 @@ TEST(ObjReader, HandsNormalsOverOnlyIfAllCornersHaveOne) {
     ASSERT_EQ(polygon(full.scene, 0).normals.size(), 4u);
     EXPECT_EQ(polygon(full.scene, 0).normals[0], dvec3(0, 0, 1));
     const Read part = read(square + normals + "f 1//1 2 3//2 4//2\n");
-    EXPECT_EQ(part.diagnostics.count_of("missing normal"), 1u);
+    EXPECT_EQ(part.diagnostics.count_of("mixed corners"), 1u);
     EXPECT_TRUE(polygon(part.scene, 0).normals.empty());
 }
 
@@ -190,17 +181,26 @@ TEST(ObjReader, TreatsConflictsInLibrariesAsDocumented) {
     EXPECT_FALSE(material("Kd 1 1 1\nillum 99\n", "illumination model").mirror);
     EXPECT_EQ(material("Kd 0 1 0\nnewmtl m\nKd 1 0 0\n", "material twice").colour, dvec3(0, 1, 0));
     EXPECT_EQ(material("Kd 1 1 1\nKd spectral file.rfl 1\n", "material line").colour, dvec3(1));
-    EXPECT_EQ(material("Kd 1 1 1\nmap_Kd a.png\n", "texture").colour, dvec3(1));
+    EXPECT_EQ(material("Kd 1 1 1\nmap_Kd a.png\n", "ignored 'map_Kd'").colour, dvec3(1));
     EXPECT_EQ(material("Kd 1 1 1\nd 2\nillum 7\n",
                        "the transmitted share is outside 0 to 1; brought to the nearest of them")
                   .transmit,
               0);
 }
 
-TEST(ObjReader, RejectsNumbersInLibrariesThatAreNotFinite) {
+TEST(ObjReader, LeavesOutLinesOfLibrariesWhoseNumbersAreNotFinite) {
     for (const char* bad : {"Kd nan 0 0", "Ns inf", "Ni 1e400", "d -inf"}) {
-        EXPECT_THROW(with_library(std::string("newmtl m\n") + bad + "\n"), InputError) << bad;
+        const Read r = with_library(std::string("newmtl m\nKd 1 1 1\n") + bad + "\n");
+        EXPECT_EQ(r.diagnostics.count_of("material line"), 1u) << bad << r.messages();
+        EXPECT_EQ(r.diagnostics.warning_count(), 1u) << r.messages();
     }
+}
+
+TEST(ObjReader, KeepsTheGeometryWhereALibraryIsNoText) {
+    const Read r = with_library(std::string("newmtl m\nKd 0 \0 1\n", 18));
+    EXPECT_EQ(r.diagnostics.count_of("material library"), 1u) << r.messages();
+    EXPECT_EQ(r.scene.primitives.size(), 1u);
+    EXPECT_EQ(r.scene.materials.at(0).colour, Material{}.colour);
 }
 
 TEST(ObjReader, FindsMaterialsWithOddNamesAndSeveralLibraries) {

@@ -85,6 +85,31 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
+TEST(SharedScenes, FoundObjFilesSayWhatTheyLeaveOutAndAreDrawn) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const std::pair<const char*, std::vector<const char*>> cases[] = {
+        {"ke_lamp", {"'Ke' (emission) is ignored"}},
+        {"mtl_silent",
+         {"'bump'", "'norm'", "'disp'", "'decal'", "'refl'", "'Pm'", "unknown word 'nonsense'"}},
+        {"dissolve_no_illum", {"no illum is given"}},
+        {"trailing_slash", {"ends with a slash"}},
+        {"unknown_word", {"unknown word 'group'"}},
+        {"smoothing_group", {}}};
+    for (const auto& [name, parts] : cases) {
+        SCOPED_TRACE(name);
+        Diagnostics diagnostics;
+        const Scene scene =
+            load_scene(shared_scenes() / "found" / (std::string(name) + ".obj"), {}, diagnostics);
+        expect_sound(scene);
+        EXPECT_GE(scene.primitives.size(), 1u);
+        const std::string said = all_messages(diagnostics);
+        for (const char* part : parts) EXPECT_NE(said.find(part), std::string::npos) << said;
+        EXPECT_EQ(said.find("asks for no refraction"), std::string::npos);
+        const bool smooth = std::string(name) == "smoothing_group";
+        EXPECT_EQ(polygon(scene, 0).normals.empty(), !smooth);
+    }
+}
+
 TEST(SharedScenes, ContinuedFaceBecomesOneQuad) {
     SKIP_WITHOUT_SHARED_SCENES();
     Diagnostics diagnostics;

@@ -164,7 +164,7 @@ TEST_F(LoadedArrayRefused, WhereTheFileIsDamaged) {
         damaged[at] = char(damaged[at] ^ 4);
         expect_refused(workshop, file(damaged), "damaged");
     }
-    expect_refused(workshop, {"--load-array", "nowhere"}, "can't be read");
+    expect_refused(workshop, {"--load-array", "nowhere"}, "no such file");
 }
 
 TEST(LoadedArrayFile, IsNotLeftHalfWritten) {

@@ -58,7 +58,7 @@ class MadeUpModel : public SizeModel {
         ++runs;
         SizeTrial trial;
         trial.setting = s;
-        if (!s.exact()) trial.storage = storage(s);
+        trial.storage = storage(s);
         const double noise = this->noise(s);
         trial.accuracy.psnr_db = std::min(200.0, smooth(s) + noise_db_ * noise);
         trial.accuracy.wrong_hit_percent = 100 * std::pow(10, -smooth(s) / 20) * (1 + 0.1 * noise);
@@ -81,7 +81,6 @@ class MadeUpModel : public SizeModel {
         limit -= box ? box_loss_[std::size_t(s.hit)][coarseness(s)] : level_loss_ * double(coarseness(s));
         if (s.normals == Normals::voxel) limit -= voxel_loss_;
         if (s.shadows == Shadows::precast) limit -= precast_loss_;
-        if (s.exact()) return limit;
         const double words = 6.02 * s.word_bits - offset_;
         return -10 * std::log10(std::pow(10, -limit / 10) + std::pow(10, -words / 10));
     }
@@ -149,10 +148,8 @@ void expect_least(std::uint64_t seed, const SizeGoal& goal) {
     ASSERT_EQ(found.has_value(), least.has_value());
     if (!found) {
         EXPECT_FALSE(search.nearest().meets);
-        EXPECT_FALSE(search.nearest().setting.exact());
         return;
     }
-    EXPECT_FALSE(found->setting.exact());
     EXPECT_TRUE(goal.met_by(found->accuracy));
     EXPECT_EQ(cost_of(found->storage), *least);
 }
@@ -195,6 +192,70 @@ TEST(SizeSearch, WhereItsAssumptionsFailStillNothingOneStepSmallerMeetsTheGoal) 
         expect_not({hit, Normals::voxel, shadows, levels, words});
         expect_not({hit, normals, Shadows::per_hit, levels, words});
     }
+}
+
+/// Machines whose accuracy has nothing to do with their size.
+class RandomModel : public MadeUpModel {
+  public:
+    RandomModel(std::uint64_t seed, double most_db) : MadeUpModel(seed), seed_(seed), most_db_(most_db) {}
+
+    SizeTrial run(const SizeSetting& s) const override {
+        SizeTrial trial = MadeUpModel::run(s);
+        property::Random random(seed_ * 7919 + std::uint64_t(trial.accuracy.wrong_hit_percent * 1e9));
+        trial.accuracy.psnr_db = random.uniform(0, most_db_);
+        trial.accuracy.wrong_hit_percent = random.uniform(0, 40);
+        return trial;
+    }
+
+  private:
+    std::uint64_t seed_;
+    double most_db_;
+};
+
+TEST(SizeSearch, WhateverTheTableSaysTheFoundIsTheSmallestRowThatMeetsAndNoneIsSaidWhereNoneDoes) {
+    int in_vain = 0;
+    for (const std::uint64_t seed : property::seeds(401, 200)) {
+        SCOPED_TRACE(property::rerun(seed));
+        property::Random random(seed);
+        const RandomModel model(seed, 100);
+        const SizeGoal goal{random.uniform(60, 101), random.chance(0.5) ? 100 : random.uniform(1, 40)};
+        SizeSearch search(model, goal, all_levels);
+        const auto found = search.find();
+        const SizeTrial* smallest = nullptr;
+        for (const SizeTrial& trial : search.tried()) {
+            EXPECT_EQ(trial.meets, goal.met_by(trial.accuracy));
+            if (!trial.meets) continue;
+            if (!smallest || cost_of(trial.storage) < cost_of(smallest->storage)) smallest = &trial;
+        }
+        ASSERT_EQ(found.has_value(), smallest != nullptr);
+        if (found) {
+            EXPECT_TRUE(found->meets);
+            EXPECT_EQ(cost_of(found->storage), cost_of(smallest->storage));
+        } else {
+            ++in_vain;
+            EXPECT_FALSE(search.nearest().meets);
+        }
+    }
+    EXPECT_TRUE(in_vain > 0 && in_vain < 200) << "else this tests nothing: " << in_vain;
+}
+
+/// The longest words miss by far, shorter ones of the same setting are lucky.
+TEST(SizeSearch, FindsShorterWordsThatAreLuckyBeforeItSaysNone) {
+    class LuckyModel : public MadeUpModel {
+      public:
+        LuckyModel() : MadeUpModel(5) {}
+        SizeTrial run(const SizeSetting& s) const override {
+            SizeTrial trial = MadeUpModel::run(s);
+            trial.accuracy.psnr_db = s.word_bits == 19 ? 40 : 30;
+            return trial;
+        }
+    };
+    const LuckyModel model;
+    SizeSearch search(model, {35, 100}, all_levels);
+    const auto found = search.find();
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->setting.word_bits, 19);
+    EXPECT_TRUE(found->meets);
 }
 
 TEST(SizeSearch, TriesTheSameInTheSameOrderEveryTime) {
