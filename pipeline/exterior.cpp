@@ -25,9 +25,7 @@ std::string name_border(int x, int y, const char* way) {
 }  // namespace
 
 Exterior::Exterior(sc_core::sc_module_name name, Environment& environment, const ExteriorTracer& tracer)
-    : Stage(name, environment),
-      tracer_(tracer),
-      processors_(std::size_t(environment.machine.exterior_processors)) {}
+    : Stage(name, environment), tracer_(tracer) {}
 
 void Exterior::join(Array& array, RankExchange* ranks) {
     Environment& env = environment();
@@ -77,8 +75,20 @@ void Exterior::arrives(std::uint32_t port, int index, Cycle visible) {
     waiting_.emplace(visible, port, index);
 }
 
-void Exterior::begin(Processor& processor, std::uint32_t port, int index, Cycle now) {
+/// The idle processor with the lowest number.
+std::uint32_t Exterior::take_idle() {
+    if (idle_.empty()) {
+        processors_.emplace_back();
+        return std::uint32_t(processors_.size() - 1);
+    }
+    const std::uint32_t number = idle_.top();
+    idle_.pop();
+    return number;
+}
+
+void Exterior::begin(std::uint32_t number, std::uint32_t port, int index, Cycle now) {
     Environment& env = environment();
+    Processor& processor = processors_[number];
     const BorderPort& border = ports_[port];
     RayPacket* packet = border.from_cell->front(index).ray;
     const Ray& ray = packet->ray;
@@ -102,62 +112,67 @@ void Exterior::begin(Processor& processor, std::uint32_t port, int index, Cycle 
     statistics_.busy_cycles += std::uint64_t(env.machine.exterior_latency);
     ++statistics_.items;
     ++working_;
+    at_work_.push_back(number);
 }
 
 StageStatistics Exterior::statistics() const {
     StageStatistics so_far = statistics_;
     const Cycle now = environment().scheduler.now();
-    for (const Processor& processor : processors_) {
-        if (processor.busy && processor.done > now) so_far.busy_cycles -= processor.done - now;
+    for (const std::uint32_t number : at_work_) {
+        const Cycle done = processors_[number].done;
+        if (done > now) so_far.busy_cycles -= done - now;
     }
     return so_far;
 }
 
-Cycle Exterior::step(Cycle now) {
+/// Sends a processor's answer; false if it can't leave yet.
+bool Exterior::answer(Processor& processor, Cycle now, Cycle& retry) {
     Environment& env = environment();
-    Cycle next = never;
-    for (Processor& processor : processors_) {
-        if (!processor.busy) continue;
-        if (now < processor.done) {
-            next = std::min(next, processor.done);
-            continue;
-        }
-        if (processor.silent) {
-            ++env.counters.rays_silent;
-            env.counters.last_progress = now;
-        } else {
-            Link* link = ports_[processor.port].to_cell;
-            if (!link->can_send(env.classes.answer, next)) continue;
-            const bool intensity = processor.answer.kind == Answer::Kind::intensity;
-            if (env.observer) {
-                const BorderPort& port = ports_[processor.port];
-                env.observer->exterior_answered(port.x, port.y, now, processor.answer);
-            }
-            Answer* answer = env.pools.answers.take();
-            *answer = processor.answer;
-            link->send(env.classes.answer, Message(answer),
+    if (processor.silent) {
+        ++env.counters.rays_silent;
+        env.counters.last_progress = now;
+        return true;
+    }
+    const BorderPort& port = ports_[processor.port];
+    if (!port.to_cell->can_send(env.classes.answer, retry)) return false;
+    const bool intensity = processor.answer.kind == Answer::Kind::intensity;
+    if (env.observer) env.observer->exterior_answered(port.x, port.y, now, processor.answer);
+    Answer* answer = env.pools.answers.take();
+    *answer = processor.answer;
+    port.to_cell->send(env.classes.answer, Message(answer),
                        env.cycles_for(intensity ? env.bits.intensity : env.bits.verdict), env.answer_routing);
-            ++env.counters.rays_answered;
-            ++env.counters.answers_sent;
-            ++env.counters.rays.return_hops;
-            if (env.phase == Phase::trace) ++env.pixel_hops[std::size_t(processor.answer.id >> 32)];
+    ++env.counters.rays_answered;
+    ++env.counters.answers_sent;
+    ++env.counters.rays.return_hops;
+    if (env.phase == Phase::trace) ++env.pixel_hops[std::size_t(processor.answer.id >> 32)];
+    return true;
+}
+
+Cycle Exterior::step(Cycle now) {
+    Cycle next = never;
+    for (; !at_work_.empty() && processors_[at_work_.front()].done <= now; at_work_.pop_front())
+        done_.insert(at_work_.front());
+    for (auto number = done_.begin(); number != done_.end();) {
+        Processor& processor = processors_[*number];
+        if (!answer(processor, now, next)) {
+            ++number;
+            continue;
         }
         processor.busy = false;
         --working_;
+        idle_.push(*number);
+        number = done_.erase(number);
     }
-    while (!waiting_.empty() && working_ < int(processors_.size())) {
+    while (!waiting_.empty() && working_ < environment().machine.exterior_processors) {
         const auto [visible, port, index] = *waiting_.begin();
         if (visible > now) {
             next = std::min(next, visible);
             break;
         }
         waiting_.erase(waiting_.begin());
-        const auto idle =
-            std::find_if(processors_.begin(), processors_.end(), [](const Processor& p) { return !p.busy; });
-        begin(*idle, port, index, now);
-        next = std::min(next, idle->done);
+        begin(take_idle(), port, index, now);
     }
-    return next;
+    return at_work_.empty() ? next : std::min(next, processors_[at_work_.front()].done);
 }
 
 }  // namespace raycell

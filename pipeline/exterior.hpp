@@ -2,7 +2,10 @@
 // section 3.3).
 #pragma once
 
+#include <deque>
+#include <functional>
 #include <memory>
+#include <queue>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -35,6 +38,8 @@ class Exterior : public Stage, public Link::Arrivals {
     StageStatistics statistics() const;
     /// Rays that its processors have taken and not yet answered.
     int working() const { return working_; }
+    /// Processors that have been busy at some time: all that a run takes memory and time for.
+    std::size_t processors_used() const { return processors_.size(); }
 
   private:
     struct BorderPort {
@@ -52,12 +57,18 @@ class Exterior : public Stage, public Link::Arrivals {
     };
 
     Cycle step(Cycle now) override;
-    void begin(Processor& processor, std::uint32_t port, int index, Cycle now);
+    bool answer(Processor& processor, Cycle now, Cycle& retry);
+    std::uint32_t take_idle();
+    void begin(std::uint32_t number, std::uint32_t port, int index, Cycle now);
 
     const ExteriorTracer& tracer_;
     std::vector<BorderPort> ports_;
     std::vector<std::unique_ptr<Link>> links_;
-    std::vector<Processor> processors_;
+    // A step costs what the busy processors cost, however many there are.
+    std::deque<Processor> processors_;  ///< those used so far, by number: the idle one of the lowest is next
+    std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> idle_;  ///< of them
+    std::deque<std::uint32_t> at_work_;  ///< in the order in which they will be done: all take as long
+    std::set<std::uint32_t> done_;       ///< with answers that still have to leave
     std::set<std::tuple<Cycle, std::uint32_t, int>> waiting_;  ///< (visible, port, class): oldest first
     int working_ = 0;
 };

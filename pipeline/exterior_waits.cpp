@@ -32,20 +32,13 @@ void Exterior::add_places(WaitMap& map) const {
 
 void Exterior::add_waits(WaitMap& map) const {
     const Environment& env = environment();
+    Wants any{working_ < env.machine.exterior_processors, false, {}, "an exterior processor"};
+    for (std::uint32_t i = 0; i < processors_.size() && !any.moves; ++i)
+        any.on.push_back(*map.find(this, Kind::processor, i));
     for (const BorderPort& port : ports_) {
         for (int index = 0; index < port.from_cell->classes(); ++index) {
-            const auto node = map.find(port.from_cell, Kind::buffer, std::uint32_t(index));
-            if (!node) continue;
-            Wants wants{false, false, {}, "an exterior processor"};
-            for (std::uint32_t i = 0; i < processors_.size(); ++i) {
-                const auto busy = map.find(this, Kind::processor, i);
-                if (busy)
-                    wants.on.push_back(*busy);
-                else
-                    wants.moves = true;
-            }
-            if (wants.moves) wants.on.clear();
-            map.set(*node, std::move(wants));
+            if (const auto node = map.find(port.from_cell, Kind::buffer, std::uint32_t(index)))
+                map.set(*node, any);
         }
     }
     for (std::uint32_t i = 0; i < processors_.size(); ++i) {

@@ -52,6 +52,25 @@ TEST_P(PictureOf, DoesNotDependOnTimeAndTransport) {
     EXPECT_GE(schedules.size(), settings_of_time().size() / 2) << "time changes the schedule";
 }
 
+TEST(ExteriorProcessors, ThatAreNeverBusyCostNeitherTimeNorMemory) {
+    // A step that went through all of them would take minutes for a million; no run here has that many rays
+    // outside.
+    const Workshop workshop;
+    const Words words = {"--cells", "128x128", "--exterior-processors"};
+    const Json some = workshop.report(own_scene("still_life.nff"), joined(words, {"5000"}));
+    const Json many = workshop.report(own_scene("still_life.nff"), joined(words, {"1000000"}));
+    ASSERT_FALSE(some.is_null() || many.is_null());
+    EXPECT_GT(some.at("stages").at("exterior").at("items"), 1000) << "else this tests nothing";
+    EXPECT_EQ(schedule(many), schedule(some));
+    EXPECT_EQ(image(many), image(some));
+    const auto memory = [](const Json& report) {
+        return report.at("model").at("peak_memory_bytes").get<double>();
+    };
+    if (!sanitized) {
+        EXPECT_LT(memory(many), memory(some) + 20e6);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Own, PictureOf, ::testing::Values("still_life.nff", "facing_mirrors.nff"),
                          [](const auto& test) {
                              const std::string name = test.param;
