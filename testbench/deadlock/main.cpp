@@ -100,6 +100,8 @@ int run(Options& options, const OptionTable& table) {
     o.machine.seed = options.traffic.seed;
     const SyntheticTraffic traffic(options.traffic);
     const CellScene scene = traffic_scene(picture, options.traffic);
+    const Bound bound = bound_of(Context(scene, picture), o.machine);
+    warn_of(bound, "deadlock_tb");
     const auto start = Clock::now();
     const Picture golden = UntimedMachine(scene, picture, nullptr, &traffic).render();
     const double wall_untimed = seconds_since(start);
@@ -130,7 +132,7 @@ int run(Options& options, const OptionTable& table) {
         outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
         outputs.keep();
     }
-    explain(result, "deadlock_tb");
+    explain(result, bound, "deadlock_tb");
     if (!o.quiet) summarise(json, options.traffic.seed);
     if (!equal) std::cerr << "deadlock_tb: the picture is not that of the untimed machine\n";
     return equal ? exit_code(result.verdict) : exit_comparison;

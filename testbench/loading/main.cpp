@@ -162,7 +162,7 @@ int run(Options& options, const OptionTable& table) {
     json["config"] = table.values();
     json["model"]["wall_seconds"] = {{"plan", wall_plan}, {"load", result.wall_load}};
     if (!o.prefix.empty()) write(o.prefix, loading, json);
-    explain(result, "loading_tb");
+    explain(result, Bound(), "loading_tb");
     complain(loading.checks);
     if (!o.quiet) std::cout << summary(json);
     return count_of(loading.checks) > 0 ? exit_comparison : exit_code(result.verdict);

@@ -103,12 +103,20 @@ int exit_code(Verdict verdict) {
     return exit_usage;
 }
 
-void explain(const RunResult& result, const char* program) {
+void warn_of(const Bound& bound, const char* program) {
+    if (bound.met()) return;
+    std::cerr << program << ": warning: the run may end in a " << name_of(bound.may) << ": " << bound.advice()
+              << '\n';
+}
+
+void explain(const RunResult& result, const Bound& bound, const char* program) {
     if (result.verdict == Verdict::completed) return;
     std::cerr << program << ": verdict " << name_of(result.verdict);
     if (result.verdict == Verdict::capacity) {
         std::cerr << ": " << result.storage.overflowed << " voxels did not fit (--voxel-capacity)";
     }
+    const bool stuck = result.verdict == Verdict::deadlock || result.verdict == Verdict::livelock;
+    if (stuck && !bound.met()) std::cerr << ": " << bound.advice();
     std::cerr << '\n';
     constexpr std::size_t shown = 10;
     for (std::size_t i = 0; i < result.report.size() && i < shown; ++i)

@@ -1,6 +1,7 @@
 // What render and size share about running a machine: is there room, how far is it, how did it end.
 #pragma once
 
+#include "model/bound.hpp"
 #include "pipeline/machine.hpp"
 #include "testbench/raycell/options.hpp"
 
@@ -19,7 +20,11 @@ void show_progress(const RunProgress& progress);
 /// What the program exits with after a run with this verdict.
 int exit_code(Verdict verdict);
 
-/// Says on standard error why a run was not completed; nothing if it was.
-void explain(const RunResult& result, const char* program = "raycell");
+/// Warns on standard error, before the run, of a machine that is not certain to end.
+void warn_of(const Bound& bound, const char* program = "raycell");
+
+/// Says on standard error why a run was not completed; nothing if it was. A run that got stuck is told what
+/// would have kept it from that.
+void explain(const RunResult& result, const Bound& bound, const char* program = "raycell");
 
 }  // namespace raycell

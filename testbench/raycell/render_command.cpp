@@ -250,6 +250,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
         for (const std::string& warning : loss_warnings(losses_of(context), context)) {
             std::cerr << options.scene << ": warning: " << warning << '\n';
         }
+        if (options.engine == Engine::timed) warn_of(bound_of(context, options.machine));
         return scene;
     };
     const std::unique_ptr<RankRun> ranks = launched_ranks().count > 1 ? std::make_unique<RankRun>() : nullptr;
@@ -298,7 +299,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
         dump_deadlock(options, config, done.deadlocked, result.schedule_hash, outputs);
     }
     outputs.keep();
-    explain(result);
+    explain(result, bound_of(Context(scene, options.picture), options.machine));
     if (!options.quiet) summarise(options, json);
     if (ranks) ranks->finish();
     return exit_code(result.verdict);

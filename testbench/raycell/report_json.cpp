@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "model/bound.hpp"
 #include "model/losses.hpp"
 #include "model/storage_bits.hpp"
 #include "testbench/raycell/knot_report.hpp"
@@ -72,6 +73,15 @@ Json losses_report(const RunResult& result, const CellScene& scene, const Pictur
             {"drift_cells", losses.drift},
             {"ties", result.counters.rays.ties},
             {"exterior_rays", result.counters.rays.exterior}};
+}
+
+Json bound_json(const Bound& bound) {
+    return {{"met", bound.met()},
+            {"may", name_of(bound.may)},
+            {"generations", bound.generations},
+            {"ray_store_needed", bound.ray_store_needed ? Json(*bound.ray_store_needed) : Json()},
+            {"reason", bound.reason},
+            {"options", bound.options}};
 }
 
 const char* name_of(LoadedBy loading) {
@@ -181,13 +191,14 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
     json["deadlock"] = {{"detected", result.verdict == Verdict::deadlock},
                         {"postponed", c.rays_destroyed},
                         {"report", result.report}};
+    json["deadlock"]["bound"] = bound_json(bound_of(Context(scene, picture), machine));
     json["deadlock"]["ledger"] = ledger_json(result);
     json["deadlock"]["time_outs"] = time_outs_json(result);
     if (result.waits.deadlocked()) json["deadlock"]["knot"] = knot_json(result);
     const bool loaded_here = !result.load_activity.buckets.empty();
     if (loaded_here || result.loading != LoadedBy::run) {
         json["activity"] = activity(result.activity);
-        json["activity"]["trace_start"] = result.trace_start;
+        json["activity"]["trace_start"] = result.trace_start == never ? Json() : Json(result.trace_start);
         json["activity"]["load"] = loaded_here ? load_activity(result.load_activity) : Json();
     }
     json["loading"] = name_of(result.loading);

@@ -148,7 +148,8 @@ RenderOptions machine_of(const SizeOptions& options, const CellScene& scene, con
     machine.quiet = false;
     machine.picture = picture_of(options, found.setting);
     machine.picture.voxel_capacity = int(found.storage.max_voxels);
-    machine.machine.ray_store = std::max(1, waiting_generations(Context(scene, machine.picture)));
+    machine.machine.ray_store =
+        std::max(1, bound_of(Context(scene, machine.picture), machine.machine).generations);
     machine.machine.buffer_depth = 1;
     machine.engine = Engine::timed;
     machine.clip_truth = options.picture.exterior == ExteriorMode::none;
@@ -178,6 +179,8 @@ int report_found(const SizeOptions& options, const CellScene& scene, const Exter
                  const SizeTrial& found, Json json) {
     const CellScene placed = with_levels(scene, found.setting.depth_levels);
     const RenderOptions machine = machine_of(options, placed, found);
+    const Bound bound = bound_of(Context(placed, machine.picture), machine.machine);
+    warn_of(bound);
     const RunResult timed = run_timed(options, machine, placed, tracer);
     if (timed.verdict == Verdict::completed && image_hash(timed.picture) != found.image) {
         throw std::logic_error("internal error: the timed machine's picture is not the untimed one's");
@@ -193,7 +196,7 @@ int report_found(const SizeOptions& options, const CellScene& scene, const Exter
     outputs.write(".toml",
                   [&](const std::string& path) { write_text(path, to_toml(render_configuration(machine))); });
     outputs.keep();
-    explain(timed);
+    explain(timed, bound);
     if (options.quiet) return exit_code(timed.verdict);
     std::cout << "\nsmallest machine: " << words_for(json["found"]) << '\n'
               << "accuracy " << accuracy_words(json["found"]) << "\n\n"

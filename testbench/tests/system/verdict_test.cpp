@@ -11,6 +11,12 @@ namespace {
 constexpr double soon =
     30;  ///< seconds in which a stuck machine must have been found out; measured: 3 at most
 
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t times = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++times;
+    return times;
+}
+
 /// Runs to `verdict` and returns the report.
 Json expect_verdict(const Workshop& workshop, const std::string& scene, const Words& words,
                     const std::string& verdict, int exit_code) {
@@ -23,6 +29,9 @@ Json expect_verdict(const Workshop& workshop, const std::string& scene, const Wo
     EXPECT_EQ(finished.exit_code, exit_code) << finished.err.substr(0, 2000);
     EXPECT_TRUE(contains(finished.err, "verdict " + verdict)) << finished.err.substr(0, 2000);
     EXPECT_LE(finished.error_lines(), 20u) << "the rest of a long report belongs into the JSON";
+    const bool stuck = verdict == "deadlock" || verdict == "livelock";
+    EXPECT_EQ(count(finished.err, "; certain to end with --"), stuck ? 2u : 0u)
+        << "a warning before the run, and why it was right: " << finished.err.substr(0, 2000);
     EXPECT_EQ(workshop.usual_results(),
               (std::vector<std::string>{"a.cells.csv", "a.exr", "a.json", "a.png", "a.toml"}))
         << "what a machine did until it stopped is of use";
@@ -85,6 +94,58 @@ TEST(Verdict, AStoreOfOneIsALivelockWhereTreesComeBackToTheirCells) {
         const Json report = expect_verdict(workshop, "facing_mirrors.nff",
                                            {"--ray-store", "1", "--slots", slots}, "livelock", 3);
         EXPECT_GT(report.at("deadlock").at("postponed").get<int>(), 0);
+    }
+}
+
+/// What is said of a machine before it runs, and its bound in the JSON.
+struct Told {
+    std::string err;
+    Json bound;
+};
+Told told(const Workshop& workshop, const Words& words) {
+    const Finished finished = workshop.render(own_scene("still_life.nff"),
+                                              joined({"--cells", "12x12", "--max-cycles", "500"}, words));
+    const Json report = Json::parse(read_text(workshop.result("a.json")));
+    return {finished.err.substr(0, finished.err.find("raycell: verdict")), report.at("deadlock").at("bound")};
+}
+
+TEST(Verdict, AMachineThatMayNeverEndIsWarnedOfBeforeItRunsWithTheOptionThatHelps) {
+    const Workshop workshop;
+    const Told few = told(workshop, {"--ray-store", "4", "--networks", "quadrant"});
+    EXPECT_EQ(
+        few.err,
+        "raycell: warning: the run may end in a livelock: --ray-store 4 is less than the 5 generations that "
+        "may have to wait; certain to end with --ray-store 5\n");
+    EXPECT_FALSE(few.bound.at("met"));
+    EXPECT_EQ(few.bound.at("may"), "livelock");
+    EXPECT_EQ(few.bound.at("generations"), 5);
+    EXPECT_EQ(few.bound.at("ray_store_needed"), 5);
+    EXPECT_EQ(few.bound.at("options"), "--ray-store 5");
+    EXPECT_TRUE(contains(few.err, few.bound.at("reason").get<std::string>()));
+
+    const Told many = told(workshop, {"--ray-store", "5", "--networks", "quadrant"});
+    EXPECT_EQ(many.err, "");
+    EXPECT_TRUE(many.bound.at("met"));
+    EXPECT_EQ(many.bound.at("options"), "");
+
+    for (const auto& [words, option] : std::vector<std::pair<Words, std::string>>{
+             {{"--networks", "shared"}, "--networks half"},
+             {{"--networks", "split"}, "--networks half"},
+             {{"--recovery", "none", "--ray-store", "200"}, "--recovery postpone"},
+             {{"--slots", "free"}, "--slots reserved"}}) {
+        const Told other = told(workshop, words);
+        EXPECT_EQ(count(other.err, "\n"), 1u) << other.err;
+        EXPECT_TRUE(contains(other.err, "certain to end with " + option + "\n")) << other.err;
+        EXPECT_TRUE(other.bound.at("ray_store_needed").is_null());
+    }
+}
+
+TEST(Verdict, NoWarningIsGivenWhereNothingIsTracedInTime) {
+    const Workshop workshop;
+    for (const Words& words : {Words{"--stage", "load"}, Words{"--engine", "untimed"}}) {
+        const Finished finished = workshop.render(own_scene("still_life.nff"),
+                                                  joined({"--cells", "12x12", "--ray-store", "1"}, words));
+        EXPECT_EQ(finished.err, "");
     }
 }
 
