@@ -76,6 +76,12 @@ class alignas(64) Cell final : public Client {
     }
     /// What the cell has done so far; what is still going on counts up to `now`.
     CellStatistics statistics(Cycle now) const;
+    /// Cycles that the units' operations of the moment will still take: counted when each began.
+    struct Remaining {
+        Cycle traversal = 0;
+        Cycle shading = 0;
+    };
+    Remaining remaining(Cycle now) const;
     /// True while anything in the cell is unfinished: a unit at work, a slot in use, an own ray not answered.
     bool busy() const;
     /// What stands in the cell, a line each: for reports of runs that stopped.
@@ -132,6 +138,7 @@ class alignas(64) Cell final : public Client {
 
     // cell_load.cpp
     void step_load(Cycle now);
+    bool drops(const LoadItem& item) const;
     void take_load(LoadItem& item);
     // cell.cpp: traversal and routing
     void finish_traversal(Cycle now);
@@ -207,6 +214,7 @@ class alignas(64) Cell final : public Client {
     Wants wants_ray(const WaitMap& map, const RayPacket& packet) const;
     Wants wants_children(const WaitMap& map, std::uint32_t index) const;
     Wants wants_of_slot(const WaitMap& map, std::uint32_t index) const;
+    Wants wants_load(const WaitMap& map) const;
 
     bool local(const Answer& a) const { return a.home_x == x_ && a.home_y == y_; }
     /// Cycles of a unit's operation, with its random stalls.

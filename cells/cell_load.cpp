@@ -18,14 +18,14 @@ void Cell::step_load(Cycle now) {
         return;
     }
     LoadItem& item = *load_item_;
-    const bool drops = item.kind == LoadItem::Kind::span ? item.span.last == x_ : x_ + 1 == env_.width();
+    const bool last = drops(item);  // before a span goes on to the next cell
     Link* east = out_[std::size_t(Side::east)];
-    if (!drops && !east->can_send(0, next_)) return;
+    if (!last && !east->can_send(0, next_)) return;
     record(now, CellEvent::load, std::uint32_t(item.kind), 0, std::uint32_t(item.kind));
     take_load(item);
     load_in_->pop(0);
     load_item_ = nullptr;
-    if (drops) {
+    if (last) {
         ++env_.counters.loads_delivered;
         env_.pools.loads.give_back(&item);
     } else {
@@ -34,6 +34,11 @@ void Cell::step_load(Cycle now) {
         east->send(0, Message(&item), env_.cycles_for(env_.load_bits(item)));
     }
     if (load_in_->front(0).kind != Message::Kind::none) want(now + 1);
+}
+
+/// Whether a load message ends here.
+bool Cell::drops(const LoadItem& item) const {
+    return item.kind == LoadItem::Kind::span ? item.span.last == x_ : x_ + 1 == env_.width();
 }
 
 void Cell::take_load(LoadItem& item) {

@@ -9,8 +9,17 @@ void Cell::add_stall(const Wait& wait, std::uint64_t ray, Cycle now) {
     if (env_.observer) env_.observer->stalled(*this, now, ray, wait.cause, cycles);
 }
 
+Cell::Remaining Cell::remaining(Cycle now) const {
+    const bool shades = shading_.job != Shading::Job::idle && shading_.done > now;
+    return {traversal_.packet && traversal_.done > now ? traversal_.done - now : 0,
+            shades ? shading_.done - now : 0};
+}
+
 CellStatistics Cell::statistics(Cycle now) const {
     CellStatistics sum = statistics_;
+    const Remaining to_come = remaining(now);
+    sum.traversal_cycles -= to_come.traversal;
+    sum.shading_cycles -= to_come.shading;
     sum.slot_cycles += ray_store_.waiting_cycles(now);
     const auto add = [&](const Wait& wait) {
         if (wait.cause != Stall::none && now > wait.since) sum.stalls[wait.cause] += now - wait.since;

@@ -19,6 +19,17 @@ std::string Cell::buffer_name(Side from, int index) const {
 }
 
 void Cell::add_places(WaitMap& map) const {
+    if (env_.phase == Phase::load) {
+        // Into a row's first cell leads the distributor's link.
+        if (!load_in_ || x_ == 0) return;
+        WaitGraph::Node node;
+        node.x = x_;
+        node.y = y_;
+        node.side = int(Side::west);
+        node.what = "input west";
+        add_buffer(map, *load_in_, 0, std::move(node));
+        return;
+    }
     const auto node = [this](Kind kind, std::string what, std::string holds, Cycle since) {
         WaitGraph::Node n;
         n.kind = kind;
@@ -73,6 +84,8 @@ void add_buffer(WaitMap& map, const Link& link, int index, WaitGraph::Node node)
             node.holds = describe(held.message.ray->ray);
         } else if (held.message.kind == Message::Kind::answer) {
             node.holds = describe(*held.message.answer);
+        } else if (held.message.kind == Message::Kind::load) {
+            node.holds = describe(*held.message.load);
         }
     }
     if (count > 1) node.holds += ", " + std::to_string(count - 1) + " behind it";
@@ -104,12 +117,12 @@ Wants Cell::wants_answer_way(const WaitMap& map, const Answer& answer) const {
 
 Wants Cell::wants_slot(const WaitMap& map, const Ray& ray) const {
     if (ray_store_.has_room(ray.generation)) return Wants::nothing("a slot, and there is one");
-    if (env_.machine.recovery == Recovery::postpone) {
-        Wants wants = wants_answer_way(map, answer_to(ray, Answer::Kind::postponed));
-        wants.text = "a way for its postponed notice: " + wants.text;
-        return wants;
-    }
     Wants wants{false, false, {}, "a slot"};
+    if (env_.machine.recovery == Recovery::postpone) {
+        wants = wants_answer_way(map, answer_to(ray, Answer::Kind::postponed));
+        wants.text = "a slot, or a way for its postponed notice: " + wants.text;
+        if (wants.moves) return wants;
+    }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];
         if (slot.state == Slot::State::empty) continue;
@@ -204,7 +217,22 @@ Wants Cell::wants_of_slot(const WaitMap& map, std::uint32_t index) const {
     return Wants::nothing("the end of its shading");
 }
 
+/// A load message: the cases of step_load().
+Wants Cell::wants_load(const WaitMap& map) const {
+    const Message head = load_in_->front(0);
+    if (head.kind != Message::Kind::load) return Wants::nothing("its arrival");
+    if (load_item_ != head.load || env_.scheduler.now() < load_done_)
+        return Wants::nothing("the end of the cell's work");
+    if (drops(*head.load)) return Wants::nothing("nothing: it ends here");
+    return wants_buffer(map, *out_[std::size_t(Side::east)], 0, "output east");
+}
+
 void Cell::add_waits(WaitMap& map) const {
+    if (env_.phase == Phase::load) {
+        if (!load_in_) return;
+        if (const auto node = map.find(load_in_, Kind::buffer, 0)) map.set(*node, wants_load(map));
+        return;
+    }
     for (int side = 0; side < side_count; ++side) {
         const Link* in = in_[std::size_t(side)];
         if (!in) continue;

@@ -126,7 +126,9 @@ std::uint64_t Link::busy_cycles() const {
     for (int index = 0; index < classes_; ++index) {
         if (const Buffer* b = find(index)) sum += b->busy;
     }
-    return sum;
+    // A message on the wires counted for all its cycles when it was sent.
+    const Cycle now = scheduler_.now();
+    return wires_free_ > now ? sum - std::min<std::uint64_t>(sum, wires_free_ - now) : sum;
 }
 
 Link::Held Link::held(int index, int place) const { return buffer(index).at(std::uint32_t(place)); }

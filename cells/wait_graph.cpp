@@ -5,7 +5,7 @@
 namespace raycell {
 
 const char* name_of(WaitGraph::Kind kind) {
-    constexpr const char* names[] = {"buffer", "slot", "child", "own", "shading", "processor"};
+    constexpr const char* names[] = {"buffer", "slot", "child", "own", "shading", "processor", "stage"};
     return names[int(kind)];
 }
 

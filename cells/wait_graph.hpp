@@ -19,7 +19,7 @@ namespace raycell {
 class WaitGraph {
   public:
     using Index = std::uint32_t;
-    enum class Kind : std::uint8_t { buffer, slot, child, own, shading, processor };
+    enum class Kind : std::uint8_t { buffer, slot, child, own, shading, processor, stage };
     enum class State : std::uint8_t { live, tail, knot };
 
     struct Node {

@@ -117,6 +117,12 @@ std::string describe(const Answer& answer) {
     return std::string("answer '") + kinds[int(answer.kind)] + "' to ray " + name_ray(answer.id);
 }
 
+std::string describe(const LoadItem& item) {
+    constexpr const char* kinds[] = {"sources and viewer", "features", "polygon", "trapeze", "span",
+                                     "end of scene"};
+    return std::string("load message '") + kinds[int(item.kind)] + "'";
+}
+
 const char* name_of(Side side) {
     constexpr const char* names[] = {"east", "south", "west", "north"};
     return names[int(side)];

@@ -74,6 +74,7 @@ class WaitMap {
 std::string name_ray(std::uint64_t id);
 std::string describe(const Ray& ray);
 std::string describe(const Answer& answer);
+std::string describe(const LoadItem& item);
 const char* name_of(Side side);
 
 }  // namespace raycell

@@ -23,6 +23,9 @@ class RowDistributor : public Stage {
     std::size_t holds() const { return to_row_ ? 1 : 0; }
     /// Whether its message stands in two links: passed on, and not yet taken from the input.
     bool works_on_what_it_passed_on() const { return item_ && passed_on_; }
+    /// Its part of the wait-for graph, with the links into and out of it; `input` is what `in` is bound to.
+    void add_places(WaitMap& map, const Link& input) const;
+    void add_waits(WaitMap& map, const Link& input) const;
 
   private:
     Cycle step(Cycle now) override;

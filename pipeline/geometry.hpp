@@ -17,6 +17,9 @@ class Geometry : public Stage {
     std::size_t polygons_taken() const { return polygon_; }
     /// Load messages in no link.
     std::size_t holds() const { return item_ ? 1 : 0; }
+    /// Its part of the wait-for graph.
+    void add_places(WaitMap& map) const;
+    void add_waits(WaitMap& map) const;
 
   private:
     Cycle step(Cycle now) override;

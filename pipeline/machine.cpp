@@ -12,9 +12,6 @@
 namespace raycell {
 namespace {
 
-/// Cycles of a thousand of the longest back-offs, which are 127 bases each.
-Cycle longest_backoffs(const Environment& env) { return 1000 * (Cycle(env.costs().backoff) * 128); }
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -101,17 +98,35 @@ void Machine::bind_pipeline() {
     }
 }
 
-Cycle Machine::livelock_window() const {
+Cycle Machine::slow_ray() const {
     // A ray and its answer may cross the array and visit the exterior, and
     // each operation may be the dearest of the table, once per source.
+    // The longest back-off is 127 bases.
     const Environment& env = environment_;
     Cycle dearest = 0;
     for (const auto& [name, member] : CostTable::entries())
         dearest = std::max(dearest, Cycle(env.costs().*member));
     const Cycle span = Cycle(env.width() + env.height());
     const Cycle hop = 64 + Cycle(env.cycles_for(env.bits.ray)) + Cycle(env.costs().walk_step);
-    return longest_backoffs(env) + 1000 * (span * hop + Cycle(env.machine.exterior_latency) +
-                                           dearest * Cycle(1 + env.context.scene.sources.size()));
+    return Cycle(env.costs().backoff) * 128 + span * hop + Cycle(env.machine.exterior_latency) +
+           dearest * Cycle(1 + env.context.scene.sources.size());
+}
+
+/// Whether a run in which nothing has come home for `idle` cycles, though rays were sent again, has a knot or
+/// goes round in circles. A knot is looked for at idle times that double, so that looking costs little, and
+/// stands once it is there: such a run can't complete any more.
+bool Machine::nothing_comes_home(Cycle idle) {
+    if (idle > 1000 * slow_ray_) return true;
+    const Cycle first_look = first_look_.value_or(slow_ray_);
+    if (idle <= first_look) {
+        next_look_ = first_look;
+        return false;
+    }
+    if (!knot_stands_ && idle > next_look_) {
+        knot_stands_ = wait_graph().deadlocked();
+        next_look_ = 2 * idle;
+    }
+    return knot_stands_;
 }
 
 bool Machine::watch(void* self, Cycle now) {
@@ -127,15 +142,12 @@ bool Machine::watch(void* self, Cycle now) {
     const Cycle last_progress = ranks ? ranks->agreed().last_progress : env.counters.last_progress;
     const std::uint64_t destroyed = ranks ? ranks->agreed().rays_destroyed : env.counters.rays_destroyed;
     const Cycle idle = now - std::max(last_progress, env.phase_start);
-    // The window goes through the whole cost table, and this is called in every cycle: its largest part
-    // first.
-    if (env.phase == Phase::trace && destroyed > 0 && idle > longest_backoffs(env) &&
-        idle > machine.livelock_window()) {
-        // Nothing comes home any more. With no new rays on their way, all that is not locked comes to rest.
+    if (env.phase == Phase::trace && destroyed > 0 && machine.nothing_comes_home(idle)) {
+        // With no new rays on their way, all that is not locked comes to rest.
         if (!env.draining && env.observer) env.observer->draining(true, now);
         env.draining = true;
         if (machine.drain_start_ == never) machine.drain_start_ = now;
-        if (now - machine.drain_start_ > machine.livelock_window()) return false;
+        if (now - machine.drain_start_ > 1000 * machine.slow_ray_) return false;
     } else if (env.draining) {  // something did come home: go on
         env.draining = false;
         if (env.observer) env.observer->draining(false, now);
@@ -179,6 +191,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     const std::clock_t processor = std::clock();
     environment_.phase = phase;
     environment_.phase_start = scheduler_.now();
+    slow_ray_ = slow_ray();
     if (phase == Phase::precast) {
         for (const Cell& cell : array_.cells()) precast_rays_ += cell.store().voxels.size();
         precast_rays_ *= environment_.context.sources.size();
@@ -236,7 +249,9 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     RunResult result;
     const PictureSettings& settings = environment_.context.settings;
     load(result);
-    activity_.begin(scheduler_.now() + 1, environment_.counters, true);
+    const auto going = [&] { return result.verdict == Verdict::completed; };
+    const Cycle next = going() ? 1 : 0;  // what never began does not begin after the run's end
+    activity_.begin(scheduler_.now() + next, environment_.counters, true);
     for (Link& link : array_.links()) link.reset_statistics();
     if (environment_.context.traffic) {
         for (Cell& cell : array_.cells()) {
@@ -246,7 +261,6 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     if (settings.shadows != Shadows::per_hit) {
         for (Cell& cell : array_.cells()) reset_shadow_bits(cell.store());
     }
-    const auto going = [&] { return result.verdict == Verdict::completed; };
     if (settings.stage == RunStage::load) {
         if (going()) {
             for (const Cell& cell : array_.cells()) {
@@ -256,9 +270,11 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
         }
     } else {
         if (going() && settings.shadows == Shadows::precast) run_phase(Phase::precast, result);
-        result.trace_start = scheduler_.now() + 1;
-        if (going()) run_phase(Phase::trace, result);
-        activity_.finish(scheduler_.now() + 1, environment_.counters);
+        if (going()) {
+            result.trace_start = scheduler_.now() + 1;
+            run_phase(Phase::trace, result);
+        }
+        activity_.finish(scheduler_.now() + next, environment_.counters);
         result.activity = activity_.activity();
         join_activity(result.activity);
     }
@@ -320,12 +336,18 @@ void Machine::collect(RunResult& result) const {
     const Context& context = environment_.context;
     const VoxelBits each = voxel_bits(context.settings, context.arithmetic.formats(), context.sources.size());
     std::uint64_t slot_cycles = 0;
+    Cell::Remaining to_come;
     for (const Cell& cell : array_.cells()) {
+        const Cell::Remaining remaining = cell.remaining(scheduler_.now());
+        to_come.traversal += remaining.traversal;
+        to_come.shading += remaining.shading;
         result.storage.add(cell.store(), each);
         result.ray_store_peak = std::max(result.ray_store_peak, cell.ray_store().peak());
         slot_cycles += cell.ray_store().waiting_cycles(scheduler_.now());
     }
     result.counters.slot_cycles += sum(slot_cycles);
+    result.counters.traversal_cycles -= sum(to_come.traversal);
+    result.counters.shading_cycles -= sum(to_come.shading);
     result.storage = joined(result.storage, [](StorageCounts& a, const StorageCounts& b) { a.add(b); });
     result.ray_store_peak = joined(result.ray_store_peak, [](int& a, int b) { a = std::max(a, b); });
     if (result.trace_cycles > 0) {

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,8 +79,8 @@ struct RunResult {
     Ledger ledger;                                ///< what was destroyed and postponed
     std::vector<TimeOutResult> time_outs;
     Activity load_activity;
-    Activity activity;      ///< of precast and trace
-    Cycle trace_start = 0;  ///< cycle in which tracing began; before it, from activity.start on, precast
+    Activity activity;          ///< of precast and trace
+    Cycle trace_start = never;  ///< cycle in which tracing began; before it, from activity.start on, precast
     LoadedBy loading = LoadedBy::run;
     std::uint64_t precast_hops = 0;  ///< of all hops of rays and answers, those of the precast phase
     std::uint64_t schedule_hash = 0;
@@ -146,11 +147,16 @@ class Machine : public sc_core::sc_module {
     /// Cells, (x, y), in which something stands: those with the oldest messages first, `most` at most.
     std::vector<std::pair<int, int>> blocked_cells(std::size_t most) const;
 
+    /// Cycles that a slow ray, its answer and its longest back-off take.
+    Cycle slow_ray() const;
     /// Cycles without any answer coming home after which postponing is called a livelock.
-    Cycle livelock_window() const;
+    Cycle livelock_window() const { return 1000 * slow_ray(); }
+    /// Cycles without any answer coming home after which a run in which rays are postponed is looked at for
+    /// knots, for the first time; by default slow_ray(). `never`: only when it has ended.
+    void look_for_knots_after(Cycle idle) { first_look_ = idle; }
 
-    /// What waits for what as the machine stands now, precast or trace phase; analysed. Of several ranks, all
-    /// must call it, and all have the whole graph.
+    /// What waits for what as the machine stands now; analysed. Of several ranks, all must call it, and all
+    /// have the whole graph.
     WaitGraph wait_graph() const;
 
   private:
@@ -171,7 +177,14 @@ class Machine : public sc_core::sc_module {
     void collect_time_outs(RunResult& result) const;
     RunResult::BufferUse buffer_use(const char* buffer_class, int index, Cycle cycles) const;
     void collect_buffers(RunResult& result) const;
-    static std::vector<std::string> knot_report(const WaitGraph& graph);
+    static std::vector<std::string> report_of(const WaitGraph& graph);
+    // loading_waits.cpp
+    const Link& input_of_row(int y) const;
+    void add_places(const Band& band, WaitMap& map) const;
+    void add_waits(const Band& band, WaitMap& map) const;
+    bool has_outside() const;
+    void add_outside_places(WaitMap& map) const;
+    void add_outside_waits(WaitMap& map) const;
     std::vector<std::string> stuck_report() const;
     static bool watch(void* self, Cycle now);
 
@@ -194,12 +207,11 @@ class Machine : public sc_core::sc_module {
     std::uint64_t joined_schedule_hash() const;
     void join_ledger(Ledger& ledger) const;
     Picture whole_picture() const;
-    struct BandCells;
-    BandCells cells_of(const Band& band) const;
     struct FarBuffer;
     void add_far_buffers(const WaitMap& map, int band, std::vector<FarBuffer>& far) const;
-    bool kick_finds_work();
+    void expect_no_work();
     bool buffers_empty() const;
+    bool nothing_comes_home(Cycle idle);
 
     Scheduler scheduler_;
     Picture picture_;
@@ -217,6 +229,10 @@ class Machine : public sc_core::sc_module {
     std::chrono::steady_clock::time_point phase_began_;
     std::uint64_t precast_rays_ = 0;
     ActivityRecorder activity_;
+    Cycle slow_ray_ = 0;               ///< slow_ray(), which goes through the whole cost table
+    std::optional<Cycle> first_look_;  ///< for knots, cycles after the last progress
+    Cycle next_look_ = 0;
+    bool knot_stands_ = false;
     Cycle drain_start_ = never;
     const volatile std::sig_atomic_t* interrupt_ = nullptr;
     bool interrupted_ = false;

@@ -145,19 +145,6 @@ Picture Machine::whole_picture() const {
     return picture;
 }
 
-/// Cells of a band of rows that this rank has.
-struct Machine::BandCells {
-    const Cell* first;
-    const Cell* last;
-    const Cell* begin() const { return first; }
-    const Cell* end() const { return last; }
-};
-
-Machine::BandCells Machine::cells_of(const Band& band) const {
-    const Cell* first = &array_.cell(0, band.first);
-    return {first, first + std::ptrdiff_t(band.end - band.first) * environment_.width()};
-}
-
 /// A buffer of a link whose source's half is another rank's: which place it is, by the band of its cell.
 struct Machine::FarBuffer {
     int rank;  ///< that has the source's half
@@ -189,15 +176,15 @@ void Machine::put_waits_together(WaitMap& map) const {
     std::vector<FarBuffer> far;
     ByteWriter places;
     for (const Band& band : environment_.share.bands()) {
-        WaitMap cells;
-        for (const Cell& cell : cells_of(band)) cell.add_places(cells);
-        add_far_buffers(cells, ranks_->band_of(band.first), far);
-        cells.write(places);
+        WaitMap rows;
+        add_places(band, rows);
+        add_far_buffers(rows, ranks_->band_of(band.first), far);
+        rows.write(places);
     }
-    WaitMap exterior;
-    if (exterior_) exterior_->add_places(exterior);
-    add_far_buffers(exterior, FarBuffer::no_band, far);
-    exterior.write(places);
+    WaitMap outside;
+    add_outside_places(outside);
+    add_far_buffers(outside, FarBuffer::no_band, far);
+    outside.write(places);
     places.put_all(far);
     RankReaders readers(*ranks_, ranks_->gather_for_all(places.take()));
 
@@ -211,34 +198,34 @@ void Machine::put_waits_together(WaitMap& map) const {
             map.read(reader);
             continue;
         }
-        for (const Cell& cell : cells_of(*mine)) cell.add_places(map);
+        add_places(*mine, map);
         WaitMap skipped;
         skipped.read(reader);
     }
-    const WaitGraph::Index exterior_start = next();  // rank 0's, behind all cells'
-    starts.push_back(exterior_start);
-    if (exterior_) exterior_->add_places(map);
+    const WaitGraph::Index outside_start = next();  // rank 0's, behind all cells'
+    starts.push_back(outside_start);
+    add_outside_places(map);
     int rank = 0;
     for (ByteReader& reader : readers) {
-        WaitMap skipped;  // of a rank without an exterior nothing
-        (rank == 0 && !exterior_ ? map : skipped).read(reader);
+        WaitMap skipped;  // of the other ranks nothing
+        (rank == 0 && !has_outside() ? map : skipped).read(reader);
         for (const FarBuffer& buffer : reader.get_all<FarBuffer>()) {
             if (buffer.rank != ranks_->rank()) continue;
             const Link* half = &ranks_->links_to(rank)->half(buffer.number);
-            const bool outside = buffer.band == FarBuffer::no_band;
-            const WaitGraph::Index start = outside ? exterior_start : starts[std::size_t(buffer.band)];
+            const bool beyond = buffer.band == FarBuffer::no_band;
+            const WaitGraph::Index start = beyond ? outside_start : starts[std::size_t(buffer.band)];
             map.name(half, WaitGraph::Kind::buffer, buffer.index, start + buffer.node);
         }
         ++rank;
     }
-    for (const Cell& cell : array_.cells()) cell.add_waits(map);
-    if (exterior_) exterior_->add_waits(map);
+    for (const Band& band : environment_.share.bands()) add_waits(band, map);
+    add_outside_waits(map);
     ByteWriter waits;
     for (const Band& band : environment_.share.bands()) {
         const auto at = std::size_t(ranks_->band_of(band.first));
         map.write_waits(waits, starts[at], starts[at + 1]);
     }
-    map.write_waits(waits, exterior_start, exterior_ ? next() : exterior_start);
+    map.write_waits(waits, outside_start, has_outside() ? next() : outside_start);
     for (const Bytes& theirs : ranks_->gather_for_all(waits.take())) {
         for (ByteReader reader(theirs); !reader.at_end();) map.read_waits(reader);
     }

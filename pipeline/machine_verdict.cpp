@@ -30,26 +30,24 @@ void Machine::judge(RunResult& result) {
         result.verdict = Verdict::interrupted;
         return;
     }
-    if (environment_.phase != Phase::load) result.waits = wait_graph();
+    result.waits = wait_graph();
     const bool locked = result.waits.deadlocked();
     if (sum(scheduler_.limit_reached()) > 0) {
         // What is locked stays so, whatever the limit; anything else may only be congested.
         result.verdict = locked ? Verdict::deadlock : Verdict::cycle_limit;
     } else if (environment_.draining) {
+        // Without a knot, what stands still may be freed by what is only held back while draining.
         const bool at_rest = !scheduler_.stopped();
-        if (sum(at_rest && !buffers_empty()) > 0 && !locked) {
-            throw std::logic_error("internal error: what stands still waits for nothing");
-        }
+        if (sum(at_rest && !buffers_empty()) > 0 && !locked) expect_no_work();
         result.verdict = locked ? Verdict::deadlock : Verdict::livelock;
     } else {
         result.verdict = Verdict::deadlock;
-        if (sum(kick_finds_work()) > 0)
-            throw std::logic_error("internal error: a cell that could move was not woken");
+        expect_no_work();
         if (environment_.phase != Phase::load && !locked) {
             throw std::logic_error("internal error: a run stands still without a knot");
         }
     }
-    result.report = locked ? knot_report(result.waits) : stuck_report();
+    result.report = locked || environment_.phase == Phase::load ? report_of(result.waits) : stuck_report();
     for (const auto& knot : result.waits.knots()) {
         result.knot_formed = std::min<Cycle>(result.knot_formed, result.waits.formed(knot));
         for (const WaitGraph::Index i : knot) {
@@ -69,19 +67,24 @@ WaitGraph Machine::wait_graph() const {
     if (ranks_) {
         put_waits_together(map);
     } else {
-        for (const Cell& cell : array_.cells()) cell.add_places(map);
-        if (exterior_) exterior_->add_places(map);
-        for (const Cell& cell : array_.cells()) cell.add_waits(map);
-        if (exterior_) exterior_->add_waits(map);
+        const Band& all = environment_.share.bands().front();
+        add_places(all, map);
+        add_outside_places(map);
+        add_waits(all, map);
+        add_outside_waits(map);
     }
+    // What is still on its way, or at work, gets to where it is only later.
+    for (WaitGraph::Index i = 0; i < map.graph().nodes().size(); ++i)
+        map.graph()[i].since = std::min(map.graph()[i].since, scheduler_.now());
     map.graph().analyse();
     return std::move(map.graph());
 }
 
-/// The nodes of all knots, a line each, oldest first.
-std::vector<std::string> Machine::knot_report(const WaitGraph& graph) {
+/// The nodes of all knots or, without any, all nodes: a line each, oldest first.
+std::vector<std::string> Machine::report_of(const WaitGraph& graph) {
     std::vector<WaitGraph::Index> order;
     for (const auto& knot : graph.knots()) order.insert(order.end(), knot.begin(), knot.end());
+    for (WaitGraph::Index i = 0; !graph.deadlocked() && i < graph.nodes().size(); ++i) order.push_back(i);
     std::stable_sort(order.begin(), order.end(), [&](WaitGraph::Index a, WaitGraph::Index b) {
         return graph.nodes()[a].since < graph.nodes()[b].since;
     });
@@ -110,36 +113,32 @@ bool Machine::buffers_empty() const {
 
 /// Nothing moves by itself: if a step of any cell now changes something, its waking was lost, and the verdict
 /// would be the model's fault, not the machine's.
-bool Machine::kick_finds_work() {
+void Machine::expect_no_work() {
     const std::uint64_t before = array_.schedule_hash();
     const Cycle stopped = scheduler_.now();
     scheduler_.set_now(stopped + (Cycle(1) << 40));  // past every transfer, cost and back-off
     for (Cell& cell : array_.cells()) cell.step(scheduler_.now());
     scheduler_.set_now(stopped);
-    return array_.schedule_hash() != before;
+    if (sum(array_.schedule_hash() != before) > 0)
+        throw std::logic_error("internal error: a cell that could move was not woken");
 }
 
 std::vector<std::string> Machine::stuck_report() const {
-    std::vector<std::vector<RowLine>> sections(4);  // cells, then links: of each all ranks' together
+    std::vector<std::vector<RowLine>> sections(
+        2);  // cells, then the border's links: of each all ranks' together
     for (const Cell& cell : array_.cells()) {
         for (std::string& line : cell.describe_blocked()) sections[0].push_back({cell.y(), std::move(line)});
     }
-    const auto add_link = [](std::vector<RowLine>& lines, int row, const Link& link) {
-        for (int index = 0; index < link.classes(); ++index) {
-            if (link.occupancy(index) == 0) continue;
-            lines.push_back({row, "link " + link.name() + " class " + std::to_string(index) +
-                                      " since cycle " + std::to_string(link.arrival(index)) + ": " +
-                                      std::to_string(link.occupancy(index)) + " messages"});
-        }
-    };
-    const std::vector<int>& rows = environment_.share.rows();
-    const std::size_t no_link = rows.front() == 0;  // leads into row 0
-    for (std::size_t i = no_link; i < rows.size(); ++i) {
-        add_link(sections[1], rows[i], *distribution_.links()[i - no_link]);
-    }
-    for (std::size_t i = 0; i < rows.size(); ++i) add_link(sections[2], rows[i], *row_links_[i]);
     if (exterior_) {
-        for (const auto& link : exterior_->links()) add_link(sections[3], 0, *link);
+        for (const auto& link : exterior_->links()) {
+            for (int index = 0; index < link->classes(); ++index) {
+                if (link->occupancy(index) == 0) continue;
+                const Cycle since = std::min(link->arrival(index), scheduler_.now());
+                sections[1].push_back({0, "link " + link->name() + " class " + std::to_string(index) +
+                                              " since cycle " + std::to_string(since) + ": " +
+                                              std::to_string(link->occupancy(index)) + " messages"});
+            }
+        }
     }
     std::vector<std::string> lines = joined_lines(std::move(sections));
     const auto age = [](const std::string& line) {

@@ -6,6 +6,7 @@
 
 #include "cells/environment.hpp"
 #include "cells/link.hpp"
+#include "cells/wait_map.hpp"
 
 namespace raycell {
 

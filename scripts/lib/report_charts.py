@@ -86,7 +86,7 @@ def activity(report, pixels):
         figures.append(chart("loading: hops per cycle", load["start_cycle"], load["start_cycle"] + load["cycles"],
                              widths, rates, []))
     marks = []
-    if series.get("trace_start", 0) > series.get("start_cycle", 0):
+    if (series.get("trace_start") or 0) > series.get("start_cycle", 0):
         marks.append((series["trace_start"], "trace"))
     formed = (report.get("deadlock", {}).get("knot") or {}).get("formed")
     if isinstance(formed, (int, float)):

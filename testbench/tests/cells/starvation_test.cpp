@@ -93,6 +93,59 @@ TEST_P(TimedStarvation, RaysThatPassGetTheirTurn) {
     EXPECT_GT(passed.rays, turns);
 }
 
+/// The cycle in which a ray, tested in cycle `decided`, starts over the output that a stream of answers holds
+/// in every cycle, or the answer that it ends in.
+Cycle wins_in(const Ray& ray, Cycle decided) {
+    MachineSettings machine;
+    machine.link_bits = 64;  // a verdict takes one cycle
+    machine.buffer_depth = 4;
+    LoneCell lone(machine, walled());
+    const Environment& env = *lone.environment;
+    Answer streaming;
+    streaming.home_x = 2;
+    streaming.home_y = 1;
+    streaming.kind = Answer::Kind::postponed;
+    streaming.child = 1;
+    Link& west = lone.from(Side::west);
+    Link& east = lone.towards(Side::east);
+    const Cycle sent = decided - 1 - machine.costs.walk_step;  // a cycle on the link, then the test
+    Cycle won = 0;
+    lone.run(decided + 100000, [&](Cycle now) {
+        Cycle retry = never;
+        if (west.can_send(env.classes.answer, retry)) lone.send(west, streaming);
+        if (now == sent) lone.send(lone.from(Side::south), ray);
+        for (int index = 0; index < env.classes.count; ++index) {
+            const Message front = east.front(index);
+            if (front.kind == Message::Kind::none) continue;
+            const bool is_ray = front.kind == Message::Kind::ray;
+            if (won == 0 && (is_ray || front.answer->child != 1))
+                won = east.arrival(index) - Cycle(env.cycles_for(is_ray ? env.bits.ray : env.bits.intensity));
+            lone.drop(east, index);
+        }
+    });
+    return won;
+}
+
+/// In which epoch, of 8192 cycles, something is tested tells to the cycle when it goes before all others:
+/// when an epoch begins and it has waited for more than 65536 cycles.
+class TimedStarvationBound : public ::testing::TestWithParam<Cycle> {
+  protected:
+    Cycle expected() const { return ((GetParam() + 65536) / 8192 + 1) * 8192; }
+};
+
+TEST_P(TimedStarvationBound, ARayGoesFirstInTheFirstEpochThatBeginsMoreThan65536CyclesAfterItsTest) {
+    EXPECT_EQ(wins_in(ray_from_south({0.9, 1, 7}, glm::normalize(dvec3(1, -0.1, 0))), GetParam()),
+              expected());
+}
+
+TEST_P(TimedStarvationBound, AnAnswerToARayThatEndsGoesFirstInTheSameCycle) {
+    EXPECT_EQ(wins_in(ray_from_south({0.5, 1, 9.9}, glm::normalize(dvec3(0, -0.1, 1))), GetParam()),
+              expected());
+}
+
+INSTANTIATE_TEST_SUITE_P(TestedIn, TimedStarvationBound,
+                         ::testing::Values(100, 8191, 8192, 8193, 16383, 16384));
+
 INSTANTIATE_TEST_SUITE_P(LinkBitsAndDepth, TimedStarvation,
                          ::testing::Combine(::testing::Values(1, 9, 27), ::testing::Values(1, 2, 4)));
 

@@ -61,6 +61,23 @@ TEST(DeadlockTb, LocksOverOneNetworkAtAnyRayStore) {
     }
 }
 
+TEST(DeadlockTb, FindsAKnotLongBeforeRaysThatAreSentAgainForEverWouldBeCalledALivelock) {
+    const Workshop workshop;
+    const Finished finished =
+        run_deadlock_tb(workshop, "--networks shared --ray-store 1 --quiet -o results/a");
+    EXPECT_EQ(finished.exit_code, 3);
+    EXPECT_TRUE(contains(finished.err, "deadlock_tb: warning: the run may end in a deadlock: "))
+        << finished.err;
+    EXPECT_TRUE(contains(finished.err, "certain to end with --networks half --ray-store 3\n"))
+        << finished.err;
+    const Json json = Json::parse(read_text(workshop.result("a.json")));
+    EXPECT_EQ(json.at("verdict"), "deadlock");
+    const int formed = json.at("deadlock").at("knot").at("formed");
+    EXPECT_LT(formed, 2000);
+    EXPECT_LT(json.at("cycles").at("trace").get<int>(), 50000);
+    EXPECT_GT(json.at("deadlock").at("postponed").get<int>(), 0);
+}
+
 TEST(DeadlockTb, LeavesNoGraphOfAnEarlierRunBesideAResultWithoutOne) {
     const Workshop workshop;
     report(workshop, "--networks shared --recovery none", 3);

@@ -1,0 +1,147 @@
+// What load messages wait for: the wait-for graph of a machine that loads. Messages only go down the
+// pipeline, so something always moves; the graph says what holds up the others.
+#include "cells/wait_map.hpp"
+#include "pipeline/machine.hpp"
+
+namespace raycell {
+namespace {
+
+using Kind = WaitGraph::Kind;
+
+WaitGraph::Node place(Kind kind, int y, std::string what) {
+    WaitGraph::Node node;
+    node.kind = kind;
+    node.y = y;
+    node.what = std::move(what);
+    return node;
+}
+
+void add_stage(WaitMap& map, const Stage& stage, int y, const char* what, const LoadItem& item, Cycle since) {
+    WaitGraph::Node node = place(Kind::stage, y, what);
+    node.holds = describe(item);
+    node.since = since;
+    map.add(&stage, 0, std::move(node));
+}
+
+/// A message in a stage, ready to leave in a cycle.
+Wants wants_out(const WaitMap& map, Cycle now, Cycle ready, const Link& out, const char* name) {
+    return now < ready ? Wants::nothing("the end of its work") : wants_buffer(map, out, 0, name);
+}
+
+/// Of a message at the end of a link that a stage can take, or waits for what the stage holds already.
+void set_input(WaitMap& map, const Link& in, const Stage& taker) {
+    const auto node = map.find(&in, Kind::buffer, 0);
+    if (!node) return;
+    if (in.front(0).kind == Message::Kind::none) {
+        map.set(*node, Wants::nothing("its arrival"));
+        return;
+    }
+    const auto stage = map.find(&taker, Kind::stage, 0);
+    map.set(*node, stage ? Wants{false, false, {*stage}, "the stage"} : Wants::nothing("the stage"));
+}
+
+const Link& link_of(const sc_core::sc_port_b<LinkOut>& out) {
+    return static_cast<const Link&>(*out.operator->());
+}
+
+}  // namespace
+
+void RowDistributor::add_places(WaitMap& map, const Link& input) const {
+    add_buffer(map, input, 0, place(Kind::buffer, row_, "input of the row's distributor"));
+    if (to_row_) add_stage(map, *this, row_, "the row's distributor", *to_row_, ready_);
+    add_buffer(map, link_of(east), 0, place(Kind::buffer, row_, "input of the row's first cell"));
+}
+
+void RowDistributor::add_waits(WaitMap& map, const Link& input) const {
+    const Cycle now = environment().scheduler.now();
+    const auto stage = map.find(this, Kind::stage, 0);
+    if (stage) map.set(*stage, wants_out(map, now, ready_, link_of(east), "the row's first cell"));
+    const auto node = map.find(&input, Kind::buffer, 0);
+    if (!node) return;
+    if (!item_ || now < ready_) {
+        map.set(*node, Wants::nothing(item_ ? "the end of the distributor's work" : "its arrival"));
+        return;
+    }
+    // It stays until both its span and itself have gone on.
+    Wants wants{false, true, {}, ""};
+    if (stage) {
+        wants.on.push_back(*stage);
+        wants.text = "its span to leave";
+    }
+    if (goes_down_) {
+        const Wants below = wants_buffer(map, link_of(down), 0, "the row below");
+        wants.on.insert(wants.on.end(), below.on.begin(), below.on.end());
+        wants.text += (wants.text.empty() ? "" : ", ") + below.text;
+    }
+    wants.moves = wants.on.empty();
+    map.set(*node, std::move(wants));
+}
+
+void Geometry::add_places(WaitMap& map) const {
+    if (item_) add_stage(map, *this, 0, "geometry", *item_, ready_);
+}
+
+void Geometry::add_waits(WaitMap& map) const {
+    const Cycle now = environment().scheduler.now();
+    if (const auto node = map.find(this, Kind::stage, 0))
+        map.set(*node, wants_out(map, now, ready_, link_of(out), "precomputation"));
+}
+
+void Precomputation::add_places(WaitMap& map) const {
+    if (item_) add_stage(map, *this, 0, "precomputation", *item_, ready_);
+}
+
+void Precomputation::add_waits(WaitMap& map) const {
+    const Cycle now = environment().scheduler.now();
+    if (const auto node = map.find(this, Kind::stage, 0))
+        map.set(*node, wants_out(map, now, ready_, link_of(out), "the first row's distributor"));
+}
+
+const Link& Machine::input_of_row(int y) const {
+    const std::size_t no_link = environment_.share.rows().front() == 0;  // leads into row 0
+    return y == 0 ? to_distribution_
+                  : *distribution_.links()[std::size_t(environment_.share.place(y)) - no_link];
+}
+
+void Machine::add_places(const Band& band, WaitMap& map) const {
+    for (int y = band.first; y < band.end; ++y) {
+        if (environment_.phase == Phase::load) distribution_.row(y).add_places(map, input_of_row(y));
+        for (int x = 0; x < environment_.width(); ++x) array_.cell(x, y).add_places(map);
+    }
+}
+
+void Machine::add_waits(const Band& band, WaitMap& map) const {
+    for (int y = band.first; y < band.end; ++y) {
+        if (environment_.phase == Phase::load) distribution_.row(y).add_waits(map, input_of_row(y));
+        for (int x = 0; x < environment_.width(); ++x) array_.cell(x, y).add_waits(map);
+    }
+}
+
+/// Whether what stands before the array or beyond its border is here.
+bool Machine::has_outside() const {
+    return environment_.phase == Phase::load ? environment_.share.contains(0) : exterior_ != nullptr;
+}
+
+void Machine::add_outside_places(WaitMap& map) const {
+    if (!has_outside()) return;
+    if (environment_.phase != Phase::load) {
+        exterior_->add_places(map);
+        return;
+    }
+    geometry_.add_places(map);
+    add_buffer(map, to_precomputation_, 0, place(Kind::buffer, 0, "input of precomputation"));
+    precomputation_.add_places(map);
+}
+
+void Machine::add_outside_waits(WaitMap& map) const {
+    if (!has_outside()) return;
+    if (environment_.phase != Phase::load) {
+        exterior_->add_waits(map);
+        return;
+    }
+    geometry_.add_waits(map);
+    set_input(map, to_precomputation_, precomputation_);
+    precomputation_.add_waits(map);
+}
+
+}  // namespace raycell
