@@ -99,7 +99,7 @@ Cycle wins_in(const Ray& ray, Cycle decided) {
     MachineSettings machine;
     machine.link_bits = 64;  // a verdict takes one cycle
     machine.buffer_depth = 4;
-    LoneCell lone(machine, walled());
+    LoneCell lone(machine, LoneCell::empty(10));
     const Environment& env = *lone.environment;
     Answer streaming;
     streaming.home_x = 2;

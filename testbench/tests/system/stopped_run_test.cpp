@@ -43,10 +43,15 @@ std::uint64_t last_time(const std::string& vcd) {
 }
 
 void expect_nothing_after_the_end(const Workshop& workshop, const Json& report, std::uint64_t limit) {
+    if (!fs::exists(workshop.result("a.waits.json"))) {  // between two phases
+        for (const auto& [kind, figures] : report.at("messages").items())
+            EXPECT_EQ(figures.at("in_flight"), 0);
+        EXPECT_LE(report.at("cycles").at("total"), limit);
+        return;
+    }
     const Json waits = Json::parse(read_text(workshop.result("a.waits.json")));
     const std::uint64_t ended = waits.at("cycle");
     EXPECT_LE(ended, limit);
-    EXPECT_FALSE(waits.at("nodes").empty()) << "something was still to be done";
     for (const Json& node : waits.at("nodes")) {
         EXPECT_LE(node.at("since"), ended) << node;
         EXPECT_FALSE(node.at("holds").get<std::string>().empty()) << node;
