@@ -91,6 +91,8 @@ TEST(Link, HasOneSetOfWiresForAllItsClasses) {
     bench.scheduler.wake(sender, 1);
     sc_core::sc_start();
     EXPECT_EQ(sent, (std::vector<Cycle>{1, 8, 15}));
+    EXPECT_EQ(link.busy_cycles(), 14u) << "the third is only beginning";
+    bench.scheduler.set_now(22);
     EXPECT_EQ(link.busy_cycles(), 21u);
 }
 
