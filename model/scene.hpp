@@ -69,7 +69,8 @@ struct Primitive {
 };
 
 struct Scene {
-    std::string name;  ///< for messages: the file's name
+    std::string name;                    ///< for messages: the file's name
+    std::vector<std::string> libraries;  ///< files of materials that were read, too
     dvec3 background{0, 0, 0};
     std::optional<View> view;
     std::vector<LightSource> sources;

@@ -269,6 +269,7 @@ void MaterialLibraries::load(std::string_view name, const Place& place, Scene& s
     const std::string fault = input_fault(path);
     if (!fault.empty()) return refuse(fault);
     if (!loaded_.insert(path).second) return;
+    scene.libraries.push_back(path.string());
 
     std::map<std::string, int> indices;
     std::vector<tinyobj::material_t> materials;

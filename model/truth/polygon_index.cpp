@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -92,6 +93,11 @@ void check(const Polygon& polygon) {
         for (int axis = 0; axis < 3; ++axis)
             if (!(std::abs(vertex[axis]) <= coordinate_limit))
                 reject("has a vertex that is not finite or lies beyond 1e15 cells");
+}
+
+[[noreturn]] void fail(RTCError error, const std::string& what) {
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error("Embree " + what + " (error " + std::to_string(int(error)) + ")");
 }
 
 /// Part of the ray inside a box, as an interval of t; empty if low > high.
@@ -208,7 +214,7 @@ void PolygonIndex::Tree::build() {
     // One thread: many programs may run beside each other, and building takes about a microsecond per
     // polygon.
     device = rtcNewDevice("threads=1");
-    if (!device) throw std::runtime_error("Embree has no device for this processor");
+    if (!device) fail(rtcGetDeviceError(nullptr), "has no device for this processor");
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -223,8 +229,7 @@ void PolygonIndex::Tree::build() {
     rtcCommitScene(scene);
     const RTCError error = rtcGetDeviceError(device);
     if (error != RTC_ERROR_NONE)
-        throw std::runtime_error("Embree can't build its tree over " + std::to_string(members.size()) +
-                                 " polygons (error " + std::to_string(int(error)) + ")");
+        fail(error, "can't build its tree over " + std::to_string(members.size()) + " polygons");
 }
 
 /// Sets up Embree's ray from where the query's enters the tree, a pad earlier, so that rounding can't put the

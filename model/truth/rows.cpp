@@ -4,7 +4,6 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -34,11 +33,12 @@ void for_each_row(int rows, int threads, const std::function<void(int, int)>& pr
 
     if (threads <= 0) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     std::vector<std::thread> helpers;
+    helpers.reserve(std::size_t(std::max(0, std::min(threads, rows) - 1)));
     for (int i = 1; i < std::min(threads, rows); ++i) {
         try {
             helpers.emplace_back(run);
-        } catch (const std::system_error&) {
-            break;  // no more threads to be had: those that there are do the work
+        } catch (const std::exception&) {
+            break;  // no more threads to be had, or no memory for them: those that there are do the work
         }
     }
     run();

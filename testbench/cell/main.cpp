@@ -94,8 +94,9 @@ std::vector<Scenario> chosen_scenarios(const Options& options) {
 /// Waveforms of a bench's cell, from its first cycle to its last.
 class Waveform {
   public:
-    Waveform(const std::string& path, CellBench& bench)
-        : file_(path),
+    Waveform(const std::string& path, CellBench& bench, OutputSet& outputs)
+        : outputs_(outputs),
+          file_(outputs.begin(vcd_suffix)),
           probe_({&bench.cell()}, bench.environment(), file_.stream(), {},
                  [path](const std::string& text) { std::cerr << path << ": warning: " << text << '\n'; }),
           scheduler_(bench.environment().scheduler) {
@@ -105,21 +106,21 @@ class Waveform {
         scheduler_.sample();
         scheduler_.set_sampler({});
         probe_.finish(scheduler_.now());
-        file_.finish();
         const std::string& path = file_.path();
         const std::string prefix = path.substr(0, path.rfind('.'));
-        const std::string name = prefix.substr(prefix.rfind('/') + 1);  // npos + 1 is 0
-        write_text(prefix + ".gtkw", probe_.save_file(name));
+        outputs_.write(".gtkw", probe_.save_file(prefix.substr(prefix.rfind('/') + 1)));  // npos + 1 is 0
+        outputs_.publish();
     }
 
   private:
-    NewFile file_;
+    OutputSet& outputs_;
+    NewFile& file_;
     Probe probe_;
     Scheduler& scheduler_;
 };
 
 /// A scenario as golden vectors: its setup, and what its cell really is told and does.
-void write_scenario(const Scenario& scenario, const std::string& path) {
+std::string vectors_of(const Scenario& scenario) {
     RenderOptions options;
     CLI::App app{"configuration"};
     OptionTable table(app);
@@ -130,7 +131,7 @@ void write_scenario(const Scenario& scenario, const std::string& path) {
     const Context context(scenario.setup.scene, scenario.setup.picture);
     std::string text = setup_text(scenario.setup, context, to_toml(table.values()));
     for (const GoldenEvent& event : scenario.events) text += text_of(event) + "\n";
-    write_text(path, text + std::to_string(scenario.last) + " end\n");
+    return text + std::to_string(scenario.last) + " end\n";
 }
 
 void check(const Options& options, std::size_t scenarios) {
@@ -144,7 +145,23 @@ void check(const Options& options, std::size_t scenarios) {
         throw UsageError("--vcd: '" + printable(vcd) + "': expected a name that ends in .vcd");
 }
 
-int run_all(const Options& options, const std::vector<Scenario>& scenarios) {
+/// Announces what is to be written; throws UsageError if it would overwrite what is replayed.
+void announce(const Options& options, OutputSet& outputs) {
+    if (!options.write.empty()) {
+        outputs.announce({""});
+    } else if (!options.vcd.empty()) {
+        outputs.announce({vcd_suffix, ".gtkw"});
+    }
+    for (const std::string& path : outputs.announced()) {
+        for (const std::string& input : options.replay) {
+            if (same_file(path, input))
+                throw UsageError(path +
+                                 ": it would be overwritten, but is to be replayed; expected another name");
+        }
+    }
+}
+
+int run_all(const Options& options, const std::vector<Scenario>& scenarios, OutputSet& outputs) {
     std::vector<std::unique_ptr<CellBench>> benches;  // all before the first runs: SystemC elaborates once
     for (const Scenario& scenario : scenarios) {
         const std::string name = "bench_" + std::to_string(benches.size());
@@ -152,7 +169,7 @@ int run_all(const Options& options, const std::vector<Scenario>& scenarios) {
             std::make_unique<CellBench>(name.c_str(), scenario.setup, scenario.events, scenario.last));
     }
     std::unique_ptr<Waveform> waveform;
-    if (!options.vcd.empty()) waveform = std::make_unique<Waveform>(options.vcd, *benches.front());
+    if (!options.vcd.empty()) waveform = std::make_unique<Waveform>(options.vcd, *benches.front(), outputs);
     std::size_t failed = 0;
     for (std::size_t i = 0; i < benches.size(); ++i) {
         const std::vector<std::string> failures = benches[i]->run();
@@ -178,11 +195,15 @@ int run(const Options& options) {
             std::cout << scenario.name << ": " << scenario.says << '\n';
         return exit_done;
     }
+    const std::string& vcd = options.vcd;
+    OutputSet outputs(options.write.empty() ? vcd.substr(0, vcd.rfind('.')) : options.write);
+    announce(options, outputs);
     if (!options.write.empty()) {
-        write_scenario(scenarios.front(), options.write);
+        outputs.write("", vectors_of(scenarios.front()));
+        outputs.publish();
         return exit_done;
     }
-    return run_all(options, scenarios);
+    return run_all(options, scenarios, outputs);
 }
 
 int run(int argc, char** argv) {

@@ -93,7 +93,12 @@ void summarise(const Json& json, std::uint64_t seed) {
 
 int run(Options& options, const OptionTable& table) {
     RenderOptions& o = options.run;
-    if (!o.prefix.empty()) check_output(o.prefix);
+    OutputSet outputs(o.prefix);
+    if (!o.prefix.empty()) {
+        check_place("--output", o.prefix);
+        outputs.announce({".toml", ".waits.json", ".json"});
+        spare_inputs(o, outputs);
+    }
     check_granularity(o);
     check_memory(o);
     const PictureSettings picture = traffic_picture(o.picture.width, o.picture.height, o.picture.max_depth);
@@ -125,12 +130,11 @@ int run(Options& options, const OptionTable& table) {
                                      {"load", result.wall_load},
                                      {"trace", result.wall_trace}};
     if (!o.prefix.empty()) {
-        OutputSet outputs(o.prefix);
-        outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(json["config"])); });
+        outputs.write(".toml", to_toml(json["config"]));
         outputs.write_if(!result.waits.nodes().empty(), ".waits.json",
                          [&] { return to_text(waits_json(result)); });
-        outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
-        outputs.keep();
+        outputs.write(".json", to_text(json));
+        outputs.publish();
     }
     explain(result, bound, "deadlock_tb");
     if (!o.quiet) summarise(json, options.traffic.seed);
@@ -155,7 +159,8 @@ int run(int argc, char** argv) {
     CLI::App app{"Synthetic ray traffic through the cell array, without a scene: does it lock?"};
     app.name("deadlock_tb");
     OptionTable table(app);
-    app.add_option("--config", "options from a file as a run writes it; the command line has precedence")
+    app.add_option("--config", options.run.config,
+                   "options from a file as a run writes it; the command line has precedence")
         ->type_name("FILE");
     add_options(table, options);
     std::vector<std::string> words = with_configuration({argv, argv + argc}, app);

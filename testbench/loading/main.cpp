@@ -13,6 +13,7 @@
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
 #include "testbench/raycell/entry.hpp"
+#include "testbench/raycell/interruptible.hpp"
 #include "testbench/raycell/machine_run.hpp"
 #include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/report_json.hpp"
@@ -64,10 +65,11 @@ void add_options(OptionTable& table, Options& options) {
     table.flag("quiet", run.quiet, "no progress, no summary");
 }
 
-CellScene scene_of(Options& options) {
+CellScene scene_of(Options& options, const OutputSet& outputs) {
     RandomPolygons& random = options.random;
     random.seed = options.run.machine.seed;
-    if (random.count == 0) return read_and_place(options.run);
+    if (random.count == 0) return read_and_place(options.run, outputs);
+    spare_inputs(options.run, outputs);
     if (!options.run.scene.empty()) throw UsageError("--random and a scene; expected one of them");
     return random_scene(random, options.run.picture);
 }
@@ -99,17 +101,13 @@ NamedFaults check(Loading& loading, LoadWatch& watch) {
     return checks;
 }
 
-void write(const std::string& prefix, const Loading& loading, const Json& json) {
-    OutputSet outputs(prefix);
-    const auto text = [&outputs](const char* suffix, const std::string& content) {
-        outputs.write(suffix, [&](const std::string& path) { write_text(path, content); });
-    };
-    text(".columns.csv", columns_csv(loading));
-    text(".rows.csv", rows_csv(loading));
-    text(".links.csv", links_csv(loading));
-    text(".toml", to_toml(json["config"]));
-    text(".json", to_text(json));
-    outputs.keep();
+void write(const Loading& loading, const Json& json, OutputSet& outputs) {
+    outputs.write(".columns.csv", columns_csv(loading));
+    outputs.write(".rows.csv", rows_csv(loading));
+    outputs.write(".links.csv", links_csv(loading));
+    outputs.write(".toml", to_toml(json["config"]));
+    outputs.write(".json", to_text(json));
+    outputs.publish();
 }
 
 void complain(const NamedFaults& checks) {
@@ -141,9 +139,13 @@ bool load(Machine& machine, const LoadPlan& plan, LoadWatch& watch, const Render
 int run(Options& options, const OptionTable& table) {
     RenderOptions& o = options.run;
     o.picture.stage = RunStage::load;
-    if (!o.prefix.empty()) check_output(o.prefix);
+    OutputSet outputs(o.prefix);
+    if (!o.prefix.empty()) {
+        check_place("--output", o.prefix);
+        outputs.announce({".columns.csv", ".rows.csv", ".links.csv", ".toml", ".json"});
+    }
     check_memory(o);
-    const CellScene scene = scene_of(options);
+    const CellScene scene = scene_of(options, outputs);
     const Context context(scene, o.picture);
     for (const std::string& warning : loss_warnings(losses_of(context), context)) {
         std::cerr << "loading_tb: warning: " << warning << '\n';
@@ -155,13 +157,14 @@ int run(Options& options, const OptionTable& table) {
     static Machine* const machine = new Machine("machine", scene, o.picture, o.machine, nullptr);
     LoadWatch watch(plan, o.machine, Machine::stage_link_depth);
     RunResult result;
+    const Interruptible interruptible(*machine);
     if (!load(*machine, plan, watch, o, result)) return exit_comparison;
     Loading loading{plan, watch, result, o.picture, o.machine, scene, stores_of(*machine), {}};
     loading.checks = check(loading, watch);
     Json json = report(loading);
     json["config"] = table.values();
     json["model"]["wall_seconds"] = {{"plan", wall_plan}, {"load", result.wall_load}};
-    if (!o.prefix.empty()) write(o.prefix, loading, json);
+    if (!o.prefix.empty()) write(loading, json, outputs);
     explain(result, Bound(), "loading_tb");
     complain(loading.checks);
     if (!o.quiet) std::cout << summary(json);
@@ -193,7 +196,7 @@ int run(int argc, char** argv) {
     app.name("loading_tb");
     OptionTable table(app);
     app.add_option(
-           "--config",
+           "--config", options.run.config,
            "options from a file as a run writes it, or raycell render; the command line has precedence")
         ->type_name("FILE");
     add_options(table, options);

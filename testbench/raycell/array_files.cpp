@@ -1,10 +1,7 @@
 #include "testbench/raycell/array_files.hpp"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -28,15 +25,6 @@ LoadedArray read(const std::string& path) {
     return read_array(file.get(), "--load-array: " + path);
 }
 
-void check_folder(const std::string& path) {
-    const std::filesystem::path file(path);
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-    if (file.filename().empty() || std::filesystem::is_directory(file) ||
-        !std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK | X_OK) != 0)
-        throw UsageError("--save-array " + path +
-                         ": expected the name of a file in a folder that exists and can be written to");
-}
-
 }  // namespace
 
 void check_arrays(const RenderOptions& options) {
@@ -55,7 +43,6 @@ void check_arrays(const RenderOptions& options) {
     }
     if (!options.save_array.empty() && !options.load_array.empty())
         throw UsageError("--save-array: the array of --load-array is kept already; expected one of the two");
-    if (!options.save_array.empty()) check_folder(options.save_array);
 }
 
 ArrayFiles::ArrayFiles(const RenderOptions& options, const CellScene& scene) : save_(options.save_array) {
@@ -78,13 +65,13 @@ ArrayFiles::ArrayFiles(const RenderOptions& options, const CellScene& scene) : s
     loaded_ = std::move(array);
 }
 
-void ArrayFiles::attach(Machine& machine) {
+void ArrayFiles::attach(Machine& machine, OutputSet& outputs) {
     if (loaded_) machine.use_loaded(std::move(*loaded_));
     if (save_.empty()) return;
-    machine.set_on_loaded([path = save_](const LoadedArray& array) {
-        NewFile file(path);
+    machine.set_on_loaded([path = save_, &outputs](const LoadedArray& array) {
+        NewFile& file = outputs.begin_file(path);
         write_array(file.stream(), array);
-        file.finish();
+        file.close();
     });
 }
 

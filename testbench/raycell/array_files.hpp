@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipeline/machine.hpp"
+#include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/options.hpp"
 
 namespace raycell {
@@ -19,8 +20,8 @@ class ArrayFiles {
     /// std::runtime_error for one that is damaged.
     ArrayFiles(const RenderOptions& options, const CellScene& scene);
 
-    /// Has a machine start with the array that was read, or keep the one that it loads. Call once.
-    void attach(Machine& machine);
+    /// Has a machine start with the array that was read, or write the one that it loads. Call once.
+    void attach(Machine& machine, OutputSet& outputs);
 
   private:
     std::optional<LoadedArray> loaded_;

@@ -8,14 +8,14 @@
 
 namespace raycell {
 
+// Beside these exit_interrupted (signals.hpp).
 enum ExitCode {
     exit_done = 0,
     exit_usage = 1,
     exit_comparison = 2,
     exit_refused = 2,  ///< what can't be done by several ranks
     exit_stuck = 3,
-    exit_limit = 4,
-    exit_interrupted = 5  ///< by SIGINT or SIGTERM, results so far written
+    exit_limit = 4
 };
 
 struct Command {

@@ -3,9 +3,11 @@
 #include <iostream>
 
 #include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/new_file.hpp"
 #include "testbench/raycell/options.hpp"
 #include "testbench/raycell/picture_file.hpp"
 #include "testbench/raycell/report_json.hpp"
+#include "testbench/raycell/scene_input.hpp"
 
 namespace raycell {
 namespace {
@@ -34,10 +36,23 @@ int run(const CompareOptions& options) {
         for (const std::string& channel : absent) hits_known = hits_known && channel != "polygon";
         return picture;
     };
+    OutputSet outputs(options.difference);
+    if (!options.difference.empty()) {
+        for (const std::string& input : {options.test, options.truth}) {
+            if (same_file(options.difference, input))
+                throw UsageError("--output " + options.difference +
+                                 ": it would be overwritten, but is to be compared; expected another name");
+        }
+        check_place("--output", options.difference);
+        outputs.announce({""});
+    }
     const Picture test = read(options.test);
     const Picture truth = read(options.truth);
     const Accuracy accuracy = compare(test, truth);
-    if (!options.difference.empty()) write_png(difference(test, truth, options.gain), options.difference);
+    if (!options.difference.empty()) {
+        outputs.write("", [&](NewFile& file) { write_png(difference(test, truth, options.gain), file); });
+        outputs.publish();
+    }
     if (options.json) {
         auto json = report(accuracy);
         if (!hits_known) json["wrong_hit_percent"] = nullptr;

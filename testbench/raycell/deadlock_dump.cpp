@@ -6,14 +6,17 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <sstream>
+#include <thread>
 
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/configuration.hpp"
+#include "testbench/raycell/interruptible.hpp"
 #include "testbench/raycell/report_json.hpp"
 
 extern char** environ;
@@ -50,7 +53,7 @@ std::string read_text(const fs::path& path) {
 }
 
 /// Runs this program with these words; its standard error goes to a file. Returns its exit code, -1 if it was
-/// ended by a signal.
+/// ended by a signal. Throws Interrupted.
 int run_again(std::vector<std::string> words, const std::string& errors) {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -64,14 +67,18 @@ int run_again(std::vector<std::string> words, const std::string& errors) {
     posix_spawn_file_actions_destroy(&actions);
     if (error != 0) fail("run", "/proc/self/exe", reason_of(error));
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        if (*noted_signal()) kill(child, SIGKILL);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
+    stop_if_interrupted();
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 /// The configuration of the second run, whose results go to `prefix`.
 nlohmann::ordered_json probing(nlohmann::ordered_json config, const RenderOptions& options,
-                               const DeadlockedCells& where, const std::string& prefix) {
+                               const DeadlockedCells& where, const std::string& prefix,
+                               const std::string& array) {
     nlohmann::ordered_json cells = nlohmann::ordered_json::array();
     for (const auto& [x, y] : where.cells) cells.push_back(std::to_string(x) + "," + std::to_string(y));
     const Cycle last = Cycle(options.probes.last);
@@ -81,8 +88,8 @@ nlohmann::ordered_json probing(nlohmann::ordered_json config, const RenderOption
     config["truth"] = false;
     config["quiet"] = true;
     config["output"] = prefix;
-    if (!options.save_array.empty()) {  // what the first run kept, the second needs not load
-        config["load-array"] = config["save-array"];
+    if (!array.empty()) {  // what the first run kept, the second needs not load
+        config["load-array"] = array;
         config["save-array"] = "";
     }
     return config;
@@ -113,7 +120,8 @@ void dump_deadlock(const RenderOptions& options, nlohmann::ordered_json config, 
     const std::string prefix = (folder.path() / fs::path(options.prefix).filename()).string();
     const std::string file = (folder.path() / "configuration").string();
     const std::string errors = (folder.path() / "errors").string();
-    write_text(file, to_toml(probing(std::move(config), options, where, prefix)));
+    const std::string array = options.save_array.empty() ? "" : outputs.partial(options.save_array);
+    write_text(file, to_toml(probing(std::move(config), options, where, prefix, array)));
     const int code = run_again({"raycell", "render", "--config", file}, errors);
     const std::string said = read_text(errors);
     if (code != exit_stuck) {
@@ -127,9 +135,7 @@ void dump_deadlock(const RenderOptions& options, nlohmann::ordered_json config, 
                                report["hash"]["schedule"].get<std::string>() + ", expected " +
                                hex(schedule_hash));
     }
-    for (const char* suffix : {".vcd", ".gtkw"}) {
-        outputs.write(suffix, [&](const std::string& path) { fs::rename(prefix + suffix, path); });
-    }
+    for (const char* suffix : {".vcd", ".gtkw"}) outputs.adopt(suffix, prefix + suffix);
 }
 
 }  // namespace raycell

@@ -22,7 +22,8 @@ DeadlockedCells deadlocked_cells(const RunResult& result, Machine& machine);
 /// Runs the same configuration once more, as a process of its own, with probes on these cells, and takes over
 /// its PREFIX.vcd and PREFIX.gtkw. Which cells lock is known only when they have, and keeping the last cycles
 /// of all cells would cost every run; runs are deterministic, so the second is the first, which is checked by
-/// its schedule's hash. Throws std::runtime_error if it can't be run, std::logic_error if it differs.
+/// its schedule's hash. Throws std::runtime_error if it can't be run, std::logic_error if it differs,
+/// Interrupted.
 void dump_deadlock(const RenderOptions& options, nlohmann::ordered_json config, const DeadlockedCells& where,
                    std::uint64_t schedule_hash, OutputSet& outputs);
 

@@ -1,11 +1,17 @@
 #include "testbench/raycell/golden_run.hpp"
 
+#include <algorithm>
+
 #include "testbench/raycell/cell_ranges.hpp"
 
 namespace raycell {
 namespace {
 
 constexpr int most_files = 256;  // all of them are open at once
+
+std::string suffix_of(int x, int y) {
+    return ".golden_" + std::to_string(x) + "_" + std::to_string(y) + ".txt";
+}
 
 }  // namespace
 
@@ -24,19 +30,24 @@ void check_golden(const RenderOptions& options) {
     }
 }
 
-GoldenRun::GoldenRun(const RenderOptions& options, const std::string& configuration, Machine& machine) {
-    std::vector<GoldenRecorder::Target> targets;
-    for (const Cell* cell : cells_in(options.golden, machine.array())) {
-        const std::string suffix =
-            ".golden_" + std::to_string(cell->x()) + "_" + std::to_string(cell->y()) + ".txt";
-        files_.push_back({suffix, std::make_unique<NewFile>(options.prefix + suffix)});
-        targets.push_back({cell, files_.back().file->stream()});
+std::vector<std::string> golden_suffixes(const RenderOptions& options) {
+    std::vector<std::string> suffixes;
+    for (const CellRange& range : options.golden) {
+        for (int y = range.y0; y <= range.y1; ++y)
+            for (int x = range.x0; x <= range.x1; ++x) suffixes.push_back(suffix_of(x, y));
     }
-    recorder_ = new GoldenRecorder("golden", machine, targets, configuration);
+    std::sort(suffixes.begin(), suffixes.end());
+    suffixes.erase(std::unique(suffixes.begin(), suffixes.end()), suffixes.end());
+    return suffixes;
 }
 
-void GoldenRun::write(OutputSet& outputs) {
-    for (File& file : files_) outputs.write(file.suffix, [&](const std::string&) { file.file->finish(); });
+GoldenRun::GoldenRun(const RenderOptions& options, const std::string& configuration, Machine& machine,
+                     OutputSet& outputs) {
+    std::vector<GoldenRecorder::Target> targets;
+    for (const Cell* cell : cells_in(options.golden, machine.array())) {
+        targets.push_back({cell, outputs.begin(suffix_of(cell->x(), cell->y())).stream()});
+    }
+    recorder_ = new GoldenRecorder("golden", machine, targets, configuration);
 }
 
 }  // namespace raycell

@@ -9,6 +9,7 @@
 #include "testbench/raycell/cell_ranges.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/raycell/entry.hpp"
+#include "testbench/raycell/signals.hpp"
 #include "testbench/raycell/time_estimate.hpp"
 
 namespace raycell {

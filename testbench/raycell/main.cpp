@@ -61,10 +61,7 @@ int run(int argc, char** argv) {
     for (const Command& command : commands) {
         if (!command.app->parsed()) continue;
         if (command.app->get_name() != "render") refuse_ranks(command.app->get_name());
-        const int code = command.run();
-        std::cout.flush();
-        if (!std::cout) throw std::runtime_error("standard output can't be written");
-        return code;
+        return command.run();
     }
     return exit_usage;
 }

@@ -107,6 +107,7 @@ struct RenderOptions {
     std::vector<CellRange> watch_pixels;
     ProbeOptions probes;
     std::string save_array;         ///< file for the loaded array; empty: none
+    std::string config;             ///< file of options; empty: none
     std::string load_array;         ///< file of a loaded array to start with; empty: none
     std::vector<CellRange> golden;  ///< cells whose messages are written
     std::vector<int> rank_rows;     ///< first rows of the ranks after the first; empty: even

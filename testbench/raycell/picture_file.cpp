@@ -15,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <stdexcept>
 
 #include "model/input_file.hpp"
@@ -177,16 +178,22 @@ void check_readable(const std::string& path) {
 
 }  // namespace
 
-void write_exr(const Picture& picture, const std::string& path) {
-    check_size("write", path, picture.width, picture.height);
-    NewFile file(path);
+void write_exr(const Picture& picture, NewFile& file) {
+    check_size("write", file.path(), picture.width, picture.height);
     try {
-        ExrStream stream(file.stream(), path);
+        ExrStream stream(file.stream(), file.path());
         write_exr_rows(picture, stream);
+    } catch (const std::bad_alloc&) {
+        throw;
     } catch (const std::exception& error) {
-        fail("write", path, error.what());
+        fail("write", file.path(), error.what());
     }
-    file.finish();
+}
+
+void write_exr(const Picture& picture, const std::string& path) {
+    NewFile file(path);
+    write_exr(picture, file);
+    file.publish();
 }
 
 Picture read_exr(const std::string& path, std::vector<std::string>* absent) {
@@ -194,6 +201,8 @@ Picture read_exr(const std::string& path, std::vector<std::string>* absent) {
     std::unique_ptr<Imf::InputFile> file;
     try {
         file = std::make_unique<Imf::InputFile>(path.c_str(), 0);
+    } catch (const std::bad_alloc&) {
+        throw;
     } catch (const std::exception& error) {
         fail("read", path, error.what());
     }
@@ -204,14 +213,14 @@ Picture read_exr(const std::string& path, std::vector<std::string>* absent) {
     }
 }
 
-void write_png(const Picture& picture, const std::string& path) {
+void write_png(const Picture& picture, NewFile& file) {
+    const std::string& path = file.path();
     check_size("write", path, picture.width, picture.height);
     std::vector<std::uint8_t> bytes;
     bytes.reserve(picture.pixels.size() * 3);
     for (int y = 0; y < picture.height; ++y)
         for (int x = 0; x < picture.width; ++x)
             for (int c = 0; c < 3; ++c) bytes.push_back(to_byte(picture.at(x, y).colour[c], x, y, path));
-    NewFile file(path);
     PngImage image;
     image.width = png_uint_32(picture.width);
     image.height = png_uint_32(picture.height);
@@ -219,7 +228,12 @@ void write_png(const Picture& picture, const std::string& path) {
     if (!png_image_write_to_stdio(&image, file.stream(), 0, bytes.data(), 0, nullptr) ||
         PNG_IMAGE_FAILED(image))
         fail("write", path, image.message);
-    file.finish();
+}
+
+void write_png(const Picture& picture, const std::string& path) {
+    NewFile file(path);
+    write_png(picture, file);
+    file.publish();
 }
 
 Picture read_png(const std::string& path) {

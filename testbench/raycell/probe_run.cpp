@@ -31,10 +31,10 @@ void check_probes(const RenderOptions& options) {
     check_inside("--probe", p.cells, options.picture);
 }
 
-ProbeRun::ProbeRun(const RenderOptions& options, Machine& machine)
+ProbeRun::ProbeRun(const RenderOptions& options, Machine& machine, OutputSet& outputs)
     : machine_(machine),
       name_(file_name(options.prefix)),
-      file_(options.prefix + ".vcd"),
+      file_(outputs.begin(".vcd")),
       probe_(cells_in(options.probes.cells, machine.array()), machine.environment(), file_.stream(),
              settings_of(options.probes),
              [path = options.prefix + ".vcd", progress = shows_progress(options)](const std::string& text) {
@@ -54,9 +54,6 @@ void ProbeRun::finish() {
     probe_.finish(last);
 }
 
-void ProbeRun::write(OutputSet& outputs) {
-    outputs.write(".vcd", [this](const std::string&) { file_.finish(); });
-    outputs.write(".gtkw", [this](const std::string& path) { write_text(path, probe_.save_file(name_)); });
-}
+void ProbeRun::write(OutputSet& outputs) { outputs.write(".gtkw", probe_.save_file(name_)); }
 
 }  // namespace raycell

@@ -15,17 +15,17 @@ void check_probes(const RenderOptions& options);
 
 class ProbeRun {
   public:
-    /// Begins PREFIX.vcd under a name of its own and puts the probes on the machine. Both must outlive it.
-    ProbeRun(const RenderOptions& options, Machine& machine);
+    /// Begins PREFIX.vcd and puts the probes on the machine. Machine and outputs must outlive it.
+    ProbeRun(const RenderOptions& options, Machine& machine, OutputSet& outputs);
     /// The run is over.
     void finish();
-    /// Gives PREFIX.vcd its name, and writes PREFIX.gtkw.
+    /// Writes PREFIX.gtkw.
     void write(OutputSet& outputs);
 
   private:
     Machine& machine_;
     std::string name_;
-    NewFile file_;
+    NewFile& file_;
     Probe probe_;
 };
 

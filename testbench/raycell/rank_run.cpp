@@ -11,16 +11,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The session that a failure has to end; there is one at most.
-RankSession* live = nullptr;
-bool failure_is_known = false;
+/// The session, which a failure has to end when everything else is gone: it lives as long as the program.
+std::unique_ptr<RankSession> session;
+/// Whether the others are about to end by themselves.
+bool others_end = false;
+
+void end_session() {
+    session->finish();
+    session.reset();
+}
 
 /// Called when a message has been printed, before the process ends with `code`.
 void end_all(int code) {
-    if (!live) return;
-    if (!failure_is_known) live->abort(code);
-    live->finish();
-    live = nullptr;
+    if (!session) return;
+    if (!others_end) session->abort(code);
+    end_session();
 }
 
 Bytes scene_bytes(const CellScene& scene) {
@@ -87,36 +92,33 @@ void check_ranks(const RenderOptions& options) {
     }
 }
 
-RankRun::RankRun() : session_(join_ranks()) {
-    live = session_.get();
-    failure_is_known = false;
+RankRun::RankRun() {
+    session = join_ranks();
     set_failure_hook(end_all);
 }
 
 RankRun::~RankRun() = default;
 
-bool RankRun::first() const { return session_->rank() == 0; }
+bool RankRun::first() const { return session->rank() == 0; }
 
 CellScene RankRun::share_scene(const std::function<CellScene()>& read) {
     if (first()) {
         try {
             CellScene scene = read();
-            session_->broadcast(scene_bytes(scene));
+            session->broadcast(scene_bytes(scene));
             return scene;
         } catch (const std::exception&) {
             ByteWriter failed;
             failed.put(false);
-            session_->broadcast(failed.take());
-            failure_is_known = true;
-            session_.release();  // end_all() has use for it yet
+            session->broadcast(failed.take());
+            others_end = true;
             throw;
         }
     }
-    const Bytes bytes = session_->broadcast({});
+    const Bytes bytes = session->broadcast({});
     ByteReader reader(bytes);
     if (!reader.get<bool>()) {
-        failure_is_known = true;
-        session_.release();
+        others_end = true;
         throw OtherRankFailed();
     }
     return scene_of(reader);
@@ -127,18 +129,18 @@ RankExchange& RankRun::exchange(const CellScene& scene, const RenderOptions& opt
     std::vector<int> bands = {0};
     bands.insert(bands.end(), options.rank_rows.begin(), options.rank_rows.end());
     bands.push_back(scene.frame.height);
-    if (options.rank_rows.empty()) bands = even_bands(session_->count(), scene.frame.height);
+    if (options.rank_rows.empty()) bands = even_bands(session->count(), scene.frame.height);
     const bool beyond = std::any_of(scene.beyond.begin(), scene.beyond.end(), [](bool b) { return b; });
     const bool exterior =
         beyond && settings.exterior == ExteriorMode::host && settings.stage == RunStage::trace;
-    exchange_ = std::make_unique<RankExchange>(*session_, std::move(bands), exterior);
+    exchange_ = std::make_unique<RankExchange>(*session, std::move(bands), exterior);
     return *exchange_;
 }
 
 std::vector<std::string> RankRun::gather_rows(const std::vector<std::string>& mine) {
     ByteWriter bytes;
     for (const std::string& row : mine) bytes.put(row);
-    RankReaders readers(*exchange_, session_->gather(bytes.take()));
+    RankReaders readers(*exchange_, session->gather(bytes.take()));
     std::vector<std::string> all;
     if (readers.empty()) return all;
     const int height = exchange_->first_row(exchange_->bands());
@@ -160,10 +162,10 @@ Json RankRun::report(Machine& machine, std::uint64_t memory_bytes) {
     std::vector<int> bands;
     for (int band = 0; band < exchange_->bands(); ++band) bands.push_back(exchange_->first_row(band));
     Json json;
-    for (const Bytes& theirs : session_->gather(bytes.take())) {
+    for (const Bytes& theirs : session->gather(bytes.take())) {
         const auto rank = ByteReader(theirs).get<Mine>();
         if (json.empty()) {
-            json = {{"count", session_->count()},
+            json = {{"count", session->count()},
                     {"meetings", rank.meetings.meetings},
                     {"second_rounds", rank.meetings.second_rounds},
                     {"bands", bands},
@@ -178,9 +180,8 @@ Json RankRun::report(Machine& machine, std::uint64_t memory_bytes) {
     return json;
 }
 
-void RankRun::finish() {
-    live = nullptr;
-    session_->finish();
-}
+void RankRun::others_are_done() { others_end = true; }
+
+void RankRun::finish() { end_session(); }
 
 }  // namespace raycell

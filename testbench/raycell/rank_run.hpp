@@ -9,15 +9,13 @@
 
 namespace raycell {
 
-class RankSession;
-
 /// --rank-rows. Not part of a run's configuration: nothing in its results depends on it.
 void add_rank_options(CLI::App& app, RenderOptions& options);
 /// Throws RanksRefused for what only one process can do, and UsageError for rows that don't fit.
 void check_ranks(const RenderOptions& options);
 
-/// This process among those that mpirun started. From its construction on, an error that is not told by
-/// share_scene() ends all ranks.
+/// This process among those that mpirun started; one at most. From its construction on, an error that is not
+/// told by share_scene() ends all ranks.
 class RankRun {
   public:
     /// Joins the others. Throws RanksRefused in a program without MPI.
@@ -36,11 +34,13 @@ class RankRun {
     std::vector<std::string> gather_rows(const std::vector<std::string>& mine);
     /// `ranks` of the report, on rank 0: rows, hops, bytes and seconds of each. `machine` has run.
     nlohmann::ordered_json report(Machine& machine, std::uint64_t memory_bytes);
+    /// The machine has run, and the others only wait for finish(): a failure from now on is this rank's
+    /// alone.
+    void others_are_done();
     /// All is written: lets the others go.
     void finish();
 
   private:
-    std::unique_ptr<RankSession> session_;
     std::unique_ptr<RankExchange> exchange_;
 };
 

@@ -63,10 +63,11 @@ struct Run {
     Forecast forecast;
     ExpectedSeconds expected;
     std::string cells_csv;
-    std::unique_ptr<ProbeRun> probes;   ///< null: none
-    std::unique_ptr<GoldenRun> golden;  ///< null: none
-    DeadlockedCells deadlocked;         ///< with --vcd-on-deadlock
-    Json ranks;                         ///< empty: one process
+    std::unique_ptr<ProbeRun> probes;              ///< null: none
+    std::unique_ptr<GoldenRun> golden;             ///< null: none
+    DeadlockedCells deadlocked;                    ///< with --vcd-on-deadlock
+    Json ranks;                                    ///< empty: one process
+    std::unique_ptr<Interruptible> interruptible;  ///< of a timed run, until its results are published
 };
 
 /// What the run will take; a long one says so.
@@ -81,7 +82,7 @@ void foretell(const RenderOptions& options, const CellScene& scene, const TruthR
 }
 
 Run run_timed(const RenderOptions& options, const std::string& configuration, const CellScene& scene,
-              const TruthRenderer* truth, const ExteriorTracer* tracer, RankRun* ranks) {
+              const TruthRenderer* truth, const ExteriorTracer* tracer, RankRun* ranks, OutputSet& outputs) {
     Run run;
     ArrayFiles arrays(options, scene);
     if (!ranks || ranks->first()) foretell(options, scene, truth, run);
@@ -97,18 +98,18 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     const std::uint64_t after = memory_bytes();
     run.bytes_per_cell = after > before ? (after - before) / cells : 0;
     run.wall_build = seconds_since(start);
-    arrays.attach(machine);
+    arrays.attach(machine, outputs);
     CellObserverList observers;
     const std::unique_ptr<RayWatch> watch = watch_of(options, std::cout);
     if (watch) observers.add(*watch);
     if (!options.golden.empty()) {
-        run.golden = std::make_unique<GoldenRun>(options, configuration, machine);
+        run.golden = std::make_unique<GoldenRun>(options, configuration, machine, outputs);
         observers.add(run.golden->observer());
     }
     if (!observers.empty()) machine.environment().observer = &observers;
-    if (!options.probes.cells.empty()) run.probes = std::make_unique<ProbeRun>(options, machine);
+    if (!options.probes.cells.empty()) run.probes = std::make_unique<ProbeRun>(options, machine, outputs);
     const bool progress = shows_progress(options) && !watch && (!ranks || ranks->first());
-    const Interruptible interruptible(machine);
+    run.interruptible = std::make_unique<Interruptible>(machine);
     run.result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
     if (watch) watch->finish(machine.environment().scheduler.now());
@@ -181,16 +182,22 @@ Json model_report(const Run& run) {
             {"bytes_per_cell", run.bytes_per_cell}};
 }
 
-/// Renders the truth beside the picture and reports how far apart they are.
+const std::vector<std::string> truth_suffixes = {".truth.exr", ".truth.png", ".difference.png"};
+
+/// Renders the truth beside the picture and reports how far apart they are. Throws Interrupted.
 Json render_truth(const RenderOptions& options, const CellScene& scene, const Picture& picture,
                   OutputSet& outputs) {
     const CellScene clipped = options.clip_truth ? clip_scene(scene) : scene;
     const TruthRenderer truth(clipped, {options.picture.max_depth, options.picture.min_weight});
-    const Picture exact = truth.render();
-    outputs.write(".truth.exr", [&](const std::string& path) { write_exr(exact, path); });
-    outputs.write(".truth.png", [&](const std::string& path) { write_png(exact, path); });
-    outputs.write(".difference.png",
-                  [&](const std::string& path) { write_png(difference(picture, exact), path); });
+    const bool progress = shows_progress(options);
+    const Picture exact = truth.render(0, [&](int done, int all) {
+        stop_if_interrupted();
+        if (progress) std::cerr << "\rtruth: row " << done << " of " << all << std::flush;
+    });
+    if (progress) end_progress();
+    outputs.write(truth_suffixes[0], [&](NewFile& file) { write_exr(exact, file); });
+    outputs.write(truth_suffixes[1], [&](NewFile& file) { write_png(exact, file); });
+    outputs.write(truth_suffixes[2], [&](NewFile& file) { write_png(difference(picture, exact), file); });
     return report(compare(picture, exact));
 }
 
@@ -217,7 +224,76 @@ void add_sample(const RenderOptions& options, const RunResult& result, const Cel
     }
 }
 
-void summarise(const RenderOptions& options, const Json& json) {
+/// Of all files that the run may write.
+std::vector<std::string> suffixes_of(const RenderOptions& options) {
+    std::vector<std::string> all = {".exr",        ".png",      ".cells.csv", ".ledger.csv",
+                                    ".waits.json", ".knot.svg", ".toml",      ".json"};
+    const auto add = [&](const std::vector<std::string>& more) {
+        all.insert(all.end(), more.begin(), more.end());
+    };
+    if (options.truth) add(truth_suffixes);
+    if (!options.probes.cells.empty() || options.probes.on_deadlock) add({".vcd", ".gtkw"});
+    add(golden_suffixes(options));
+    return all;
+}
+
+/// Announces all that the run writes; throws UsageError for what is refused.
+void announce(const RenderOptions& options, OutputSet& outputs) {
+    check_place("--output", options.prefix);
+    outputs.announce(suffixes_of(options));
+    if (options.save_array.empty()) return;
+    check_place("--save-array", options.save_array);
+    for (const std::string& path : outputs.announced()) {
+        if (same_file(path, options.save_array))
+            throw UsageError("--save-array " + options.save_array +
+                             ": --output has a file of this name; expected another");
+    }
+    outputs.announce_file(options.save_array);
+}
+
+/// All files of a run that has ended, published together. False if a signal cut short what comes after it.
+bool write_results(const RenderOptions& options, const CellScene& scene, const Run& run, const Json& config,
+                   Json& json, OutputSet& outputs) {
+    const RunResult& result = run.result;
+    bool whole = true;
+    const auto unless_interrupted = [&](const char* what, const std::vector<std::string>& suffixes,
+                                        const std::function<void()>& work) {
+        try {
+            work();
+        } catch (const Interrupted&) {
+            std::cerr << "raycell: interrupted: " << what << '\n';
+            for (const std::string& suffix : suffixes) outputs.write_if(false, suffix, {});
+            whole = false;
+        }
+    };
+    if (options.truth) {
+        unless_interrupted("no truth", truth_suffixes,
+                           [&] { json["accuracy"] = render_truth(options, scene, result.picture, outputs); });
+    }
+    json["config"] = config;
+    json["model"] = model_report(run);
+    if (!run.ranks.empty()) json["ranks"] = run.ranks;
+    outputs.write(".exr", [&](NewFile& file) { write_exr(result.picture, file); });
+    outputs.write(".png", [&](NewFile& file) { write_png(result.picture, file); });
+    outputs.write(".cells.csv", run.cells_csv);
+    outputs.write_if(result.ledger.destroyed() > 0, ".ledger.csv", [&] { return ledger_csv(result.ledger); });
+    outputs.write_if(!result.waits.nodes().empty(), ".waits.json",
+                     [&] { return to_text(waits_json(result)); });
+    outputs.write_if(result.waits.deadlocked(), ".knot.svg",
+                     [&] { return knot_svg(result, options.picture.width, options.picture.height); });
+    outputs.write(".toml", to_toml(config));
+    outputs.write(".json", to_text(json));
+    if (run.probes) run.probes->write(outputs);
+    if (!run.deadlocked.cells.empty()) {
+        unless_interrupted("no waveforms", {".vcd", ".gtkw"}, [&] {
+            dump_deadlock(options, config, run.deadlocked, result.schedule_hash, outputs);
+        });
+    }
+    outputs.publish();
+    return whole;
+}
+
+void summarise(const RenderOptions& options, const Json& json, bool whole) {
     const auto& cycles = json["cycles"];
     std::cout << "verdict " << json["verdict"].get<std::string>() << "; cycles: load " << cycles["load"]
               << ", precast " << cycles["precast"] << ", trace " << cycles["trace"] << "; "
@@ -227,8 +303,8 @@ void summarise(const RenderOptions& options, const Json& json) {
                   << json["accuracy"]["wrong_hit_percent"].get<double>() << " % of the pixels\n";
     }
     std::cout << "picture: " << options.prefix << ".png\n";
-    if (json["verdict"] == "deadlock" ? options.probes.on_deadlock || !options.probes.cells.empty()
-                                      : !options.probes.cells.empty()) {
+    const bool dumped = options.probes.on_deadlock && json["verdict"] == "deadlock" && whole;
+    if (dumped || !options.probes.cells.empty()) {
         std::cout << "waveforms: " << options.prefix << ".vcd, to be opened with " << options.prefix
                   << ".gtkw\n";
     }
@@ -242,10 +318,11 @@ int run(const RenderOptions& options, const OptionTable& table) {
     check_ranks(options);
     check_arrays(options);
     const auto start = Clock::now();
+    OutputSet outputs(options.prefix);
     const auto read = [&] {
-        check_output(options.prefix);
+        announce(options, outputs);
         check_memory(options);
-        CellScene scene = read_and_place(options);
+        CellScene scene = read_and_place(options, outputs);
         const Context context(scene, options.picture);
         for (const std::string& warning : loss_warnings(losses_of(context), context)) {
             std::cerr << options.scene << ": warning: " << warning << '\n';
@@ -266,43 +343,24 @@ int run(const RenderOptions& options, const OptionTable& table) {
     if (exterior) tracer = std::make_unique<ClassicalExterior>(scene, *whole);
     const double wall_placing = seconds_since(start);
     const Json config = table.values();
-    Run done = options.engine == Engine::timed
-                   ? run_timed(options, to_toml(config), scene, whole.get(), tracer.get(), ranks.get())
-                   : run_untimed(options, scene, tracer.get());
+    Run done = options.engine == Engine::timed ? run_timed(options, to_toml(config), scene, whole.get(),
+                                                           tracer.get(), ranks.get(), outputs)
+                                               : run_untimed(options, scene, tracer.get());
     done.wall_build += wall_placing;
     if (ranks && !ranks->first()) {
         ranks->finish();
         return exit_done;
     }
 
-    OutputSet outputs(options.prefix);
+    if (ranks) ranks->others_are_done();
     const RunResult& result = done.result;
     Json json = report(result, scene, options.picture, options.machine);
     add_sample(options, result, scene, whole.get(), json["losses"]);
-    if (options.truth) json["accuracy"] = render_truth(options, scene, result.picture, outputs);
-    json["config"] = config;
-    json["model"] = model_report(done);
-    if (!done.ranks.empty()) json["ranks"] = done.ranks;
-    outputs.write(".exr", [&](const std::string& path) { write_exr(result.picture, path); });
-    outputs.write(".png", [&](const std::string& path) { write_png(result.picture, path); });
-    outputs.write(".cells.csv", [&](const std::string& path) { write_text(path, done.cells_csv); });
-    outputs.write_if(result.ledger.destroyed() > 0, ".ledger.csv", [&] { return ledger_csv(result.ledger); });
-    outputs.write_if(!result.waits.nodes().empty(), ".waits.json",
-                     [&] { return to_text(waits_json(result)); });
-    outputs.write_if(result.waits.deadlocked(), ".knot.svg",
-                     [&] { return knot_svg(result, options.picture.width, options.picture.height); });
-    outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(config)); });
-    outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
-    if (done.probes) done.probes->write(outputs);
-    if (done.golden) done.golden->write(outputs);
-    if (!done.deadlocked.cells.empty()) {
-        dump_deadlock(options, config, done.deadlocked, result.schedule_hash, outputs);
-    }
-    outputs.keep();
+    const bool uncut = write_results(options, scene, done, config, json, outputs);
     explain(result, bound_of(Context(scene, options.picture), options.machine));
-    if (!options.quiet) summarise(options, json);
+    if (!options.quiet) summarise(options, json, uncut);
     if (ranks) ranks->finish();
-    return exit_code(result.verdict);
+    return uncut ? exit_code(result.verdict) : int(exit_interrupted);
 }
 
 }  // namespace
@@ -311,7 +369,8 @@ Command add_render_command(CLI::App& program) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* app = program.add_subcommand("render", "Renders a scene with the simulated machine");
     auto table = std::make_shared<OptionTable>(*app);
-    app->add_option("--config", "options from a file as a run writes it; the command line has precedence")
+    app->add_option("--config", options->config,
+                    "options from a file as a run writes it; the command line has precedence")
         ->type_name("FILE");
     add_scene_options(*table, *options);
     add_machine_options(*table, *options);

@@ -176,7 +176,7 @@ void print_timed(const RunResult& timed, const MachineSettings& machine) {
 }
 
 int report_found(const SizeOptions& options, const CellScene& scene, const ExteriorTracer* tracer,
-                 const SizeTrial& found, Json json) {
+                 const SizeTrial& found, Json json, OutputSet& outputs) {
     const CellScene placed = with_levels(scene, found.setting.depth_levels);
     const RenderOptions machine = machine_of(options, placed, found);
     const Bound bound = bound_of(Context(placed, machine.picture), machine.machine);
@@ -190,12 +190,10 @@ int report_found(const SizeOptions& options, const CellScene& scene, const Exter
     json["found"]["ray_store"] = machine.machine.ray_store;
     json["found"]["buffer_depth"] = machine.machine.buffer_depth;
     json["timed"] = report(timed, placed, machine.picture, machine.machine);
-    OutputSet outputs(options.prefix);
-    outputs.write(".csv", [&](const std::string& path) { write_text(path, tried_csv(json["tried"])); });
-    outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
-    outputs.write(".toml",
-                  [&](const std::string& path) { write_text(path, to_toml(render_configuration(machine))); });
-    outputs.keep();
+    outputs.write(".csv", tried_csv(json["tried"]));
+    outputs.write(".json", to_text(json));
+    outputs.write(".toml", to_toml(render_configuration(machine)));
+    outputs.publish();
     explain(timed, bound);
     if (options.quiet) return exit_code(timed.verdict);
     std::cout << "\nsmallest machine: " << words_for(json["found"]) << '\n'
@@ -206,12 +204,11 @@ int report_found(const SizeOptions& options, const CellScene& scene, const Exter
     return exit_code(timed.verdict);
 }
 
-int report_unreachable(const SizeOptions& options, const SizeTrial& nearest, Json json) {
+int report_unreachable(const SizeTrial& nearest, Json json, OutputSet& outputs) {
     json["nearest"] = report(nearest);
-    OutputSet outputs(options.prefix);
-    outputs.write(".csv", [&](const std::string& path) { write_text(path, tried_csv(json["tried"])); });
-    outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
-    outputs.keep();
+    outputs.write(".csv", tried_csv(json["tried"]));
+    outputs.write(".json", to_text(json));
+    outputs.publish();
     std::cout.flush();
     std::cerr << "raycell: no setting reaches the goal; nearest: " << accuracy_words(json["nearest"])
               << " with " << words_for(json["nearest"]) << '\n';
@@ -222,9 +219,11 @@ int run(const SizeOptions& options, const OptionTable& table, const CLI::App& ap
     if (app.count("--psnr") + app.count("--wrong-hits") == 0) {
         throw UsageError("no goal given; expected --psnr, --wrong-hits or both, see --help");
     }
-    check_output(options.prefix);
+    OutputSet outputs(options.prefix);
+    check_place("--output", options.prefix);
+    outputs.announce({".csv", ".json", ".toml"});
     check_memory(options);
-    const CellScene scene = read_and_place(options);
+    const CellScene scene = read_and_place(options, outputs);
     const TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
     const bool exterior = options.picture.exterior == ExteriorMode::host;
     const CellScene clipped = exterior ? CellScene() : clip_scene(scene);
@@ -246,8 +245,8 @@ int run(const SizeOptions& options, const OptionTable& table, const CLI::App& ap
     json["tried"] = Json::array();
     for (const SizeTrial& trial : search.tried()) json["tried"].push_back(report(trial));
     if (!options.quiet) std::cout << tried_table(json["tried"]);
-    if (!found) return report_unreachable(options, search.nearest(), std::move(json));
-    return report_found(options, scene, tracer, *found, std::move(json));
+    if (!found) return report_unreachable(search.nearest(), std::move(json), outputs);
+    return report_found(options, scene, tracer, *found, std::move(json), outputs);
 }
 
 }  // namespace
@@ -257,7 +256,7 @@ Command add_size_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "size", "Finds the smallest machine for an accuracy; exit code 2 if there is none");
     auto table = std::make_shared<OptionTable>(*app);
-    app->add_option("--config",
+    app->add_option("--config", options->config,
                     "options from a file that size or render wrote; the command line has precedence")
         ->type_name("FILE");
     add_scene_options(*table, *options);

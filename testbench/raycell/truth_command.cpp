@@ -37,8 +37,12 @@ int print_counts(const TruthOptions& options, const TruthRenderer& truth) {
 }
 
 int run(const TruthOptions& options, const OptionTable& table) {
-    if (options.count == 0) check_output(options.prefix);
-    CellScene scene = read_and_place(options);
+    OutputSet outputs(options.prefix);
+    if (options.count == 0) {
+        check_place("--output", options.prefix);
+        outputs.announce({".exr", ".png", ".toml", ".json"});
+    }
+    CellScene scene = read_and_place(options, outputs);
     if (options.clip) scene = clip_scene(scene);
     const TruthRenderer truth(scene, {options.picture.max_depth, options.picture.min_weight});
     if (options.count > 0) return print_counts(options, truth);
@@ -51,12 +55,11 @@ int run(const TruthOptions& options, const OptionTable& table) {
     json["hash"]["image"] = hex(image_hash(picture));
     json["model"]["wall_seconds"]["trace"] =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    OutputSet outputs(options.prefix);
-    outputs.write(".exr", [&](const std::string& path) { write_exr(picture, path); });
-    outputs.write(".png", [&](const std::string& path) { write_png(picture, path); });
-    outputs.write(".toml", [&](const std::string& path) { write_text(path, to_toml(table.values())); });
-    outputs.write(".json", [&](const std::string& path) { write_text(path, to_text(json)); });
-    outputs.keep();
+    outputs.write(".exr", [&](NewFile& file) { write_exr(picture, file); });
+    outputs.write(".png", [&](NewFile& file) { write_png(picture, file); });
+    outputs.write(".toml", to_toml(table.values()));
+    outputs.write(".json", to_text(json));
+    outputs.publish();
     if (!options.quiet) std::cout << options.prefix << ".png\n";
     return exit_done;
 }
@@ -67,7 +70,7 @@ Command add_truth_command(CLI::App& program) {
     auto options = std::make_shared<TruthOptions>();
     CLI::App* app = program.add_subcommand("truth", "Renders a scene exactly, without the machine");
     auto table = std::make_shared<OptionTable>(*app);
-    app->add_option("--config",
+    app->add_option("--config", options->config,
                     "options from a file that truth or render wrote; the command line has precedence")
         ->type_name("FILE");
     add_scene_options(*table, *options);

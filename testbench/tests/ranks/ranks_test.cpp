@@ -3,10 +3,10 @@
 #include <sys/types.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <thread>
 
 #include "../system/program.hpp"
 
@@ -171,31 +171,45 @@ pid_t process_of_rank(const Workshop& workshop, int rank) {
     return 0;
 }
 
-/// Starts a run of minutes by two ranks and sends one of them a signal when both are at it.
-Finished with_signal(const Workshop& workshop, int rank, int signal) {
-    std::thread sender([&] {
-        for (int tenths = 0; tenths < 200 && process_of_rank(workshop, rank) == 0; ++tenths)
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        std::this_thread::sleep_for(std::chrono::seconds(2));
-        const pid_t process = process_of_rank(workshop, rank);
-        EXPECT_NE(process, 0) << "rank " << rank << " ended by itself";
-        if (process != 0) kill(process, signal);
-    });
-    const Finished finished = workshop.run_program(
-        mpirun,
-        by_ranks(2, render(own_scene("still_life.nff"), "a", {"--cells", "256x256", "--link-bits", "1"})),
-        60);
-    sender.join();
-    return finished;
-}
+/// A run of minutes by two ranks. Their standard error is no terminal of mpirun's making, so it is given to
+/// them.
+class RunByRanks : public Running {
+  public:
+    explicit RunByRanks(const Workshop& workshop)
+        : Running(workshop, mpirun, words(), NamedTerminal()), workshop_(workshop) {}
+
+    /// Waits until both are at it, and sends one of them a signal.
+    void signal(int rank, int number) {
+        ASSERT_TRUE(says("load: cycle")) << "it ended by itself";
+        const pid_t process = process_of_rank(workshop_, rank);
+        ASSERT_NE(process, 0) << "rank " << rank << " ended by itself";
+        kill(process, number);
+    }
+
+  private:
+    static Words words() {
+        Words all = by_ranks(2, {"render", own_scene("still_life.nff").string(), "-o", "results/a", "--cells",
+                                 "256x256", "--link-bits", "1"});
+        // The last word is the terminal's name.
+        const Words shell = {"/bin/sh", "-c",
+                             "for terminal; do :; done; exec " RAYCELL_PROGRAM
+                             " \"$1\" \"$2\" \"$3\" \"$4\" \"$5\" \"$6\" \"$7\" \"$8\" 2>\"$terminal\"",
+                             "sh"};
+        const auto program = std::find(all.begin(), all.end(), RAYCELL_PROGRAM);
+        all.insert(all.erase(program), shell.begin(), shell.end());
+        return all;
+    }
+
+    const Workshop& workshop_;
+};
 
 TEST(Ranks, EndAllWithoutAFileWhenOneIsKilled) {
     SKIP_WITHOUT_MPI();
     const Workshop workshop;
-    const Finished finished = with_signal(workshop, 1, SIGKILL);
-    EXPECT_FALSE(finished.timed_out);
+    RunByRanks run(workshop);
+    run.signal(1, SIGKILL);
+    const Finished finished = run.finish();
     EXPECT_NE(finished.exit_code, 0);
-    EXPECT_LT(finished.seconds, 30);
     EXPECT_TRUE(workshop.results().empty());
     EXPECT_EQ(process_of_rank(workshop, 0), 0) << "rank 0 lives on";
 }
@@ -203,8 +217,9 @@ TEST(Ranks, EndAllWithoutAFileWhenOneIsKilled) {
 TEST(Ranks, KeepWhatTheyHaveWhenOneIsInterrupted) {
     SKIP_WITHOUT_MPI();
     const Workshop workshop;
-    const Finished finished = with_signal(workshop, 1, SIGTERM);
-    EXPECT_FALSE(finished.timed_out);
+    RunByRanks run(workshop);
+    run.signal(1, SIGTERM);
+    const Finished finished = run.finish();
     EXPECT_EQ(finished.exit_code, 5) << finished.err;
     EXPECT_TRUE(contains(finished.err, "verdict interrupted")) << finished.err;
     EXPECT_EQ(workshop.usual_results(),
@@ -214,11 +229,27 @@ TEST(Ranks, KeepWhatTheyHaveWhenOneIsInterrupted) {
     expect_sound(json);
 }
 
+TEST(Ranks, SayOnceThatResultsCannotBeWritten) {
+    SKIP_WITHOUT_MPI();
+    const Workshop workshop;
+    RunByRanks run(workshop);
+    ASSERT_TRUE(run.says("load: cycle"));
+    fs::create_directory(workshop.result("a.json"));  // after the program has looked
+    run.signal(0, SIGTERM);
+    const Finished finished = run.finish();
+    EXPECT_EQ(finished.exit_code, 1);
+    const std::string message = "raycell: can't write results/a.json";
+    const std::size_t first = finished.err.find(message);
+    ASSERT_NE(first, std::string::npos) << finished.err;
+    EXPECT_EQ(finished.err.find(message, first + 1), std::string::npos) << "said twice:\n" << finished.err;
+    EXPECT_EQ(workshop.results(), std::vector<std::string>{"a.json"});
+}
+
 /// Expects a run by two ranks to say `message` once and to leave nothing.
 void expect_refused(const Words& words, int exit_code, const std::string& message, int ranks = 2) {
     const Workshop workshop;
     workshop.write("bad.nff", "v\ngarbage\n");
-    const Finished finished = workshop.run_program(mpirun, by_ranks(ranks, words), 30);
+    const Finished finished = workshop.run_program(mpirun, by_ranks(ranks, words));
     EXPECT_FALSE(finished.timed_out);
     EXPECT_EQ(finished.exit_code, exit_code);
     EXPECT_TRUE(contains(finished.err, message)) << finished.err;
@@ -234,7 +265,9 @@ TEST(Ranks, SayOnceWhatIsWrongWithAScene) {
 
 TEST(Ranks, SayOnceWhatIsWrongWithTheOutput) {
     SKIP_WITHOUT_MPI();
-    expect_refused({"render", own_scene("cornell.nff").string(), "-o", "missing/a"}, 1, "--output missing/a");
+    const std::string scene = own_scene("cornell.nff").string();
+    expect_refused({"render", scene, "-o", "missing/a"}, 1, "--output missing/a");
+    expect_refused({"render", scene, "-o", std::string(300, 'a')}, 1, "File name too long");
 }
 
 /// A process that takes itself for rank 0 of two or more: what is refused is so before it looks for the
@@ -243,7 +276,7 @@ void expect_refused_alone(const Words& words, const std::string& message, int ra
     SCOPED_TRACE(message);
     const Workshop workshop;
     setenv("OMPI_COMM_WORLD_SIZE", std::to_string(ranks).c_str(), 1);
-    const Finished finished = workshop.run(words, 20);
+    const Finished finished = workshop.run(words);
     unsetenv("OMPI_COMM_WORLD_SIZE");
     EXPECT_FALSE(finished.timed_out);
     EXPECT_EQ(finished.exit_code, 2);
@@ -275,7 +308,7 @@ TEST(Ranks, RefuseRowsThatDoNotFit) {
         SCOPED_TRACE(rows);
         const Workshop workshop;
         setenv("OMPI_COMM_WORLD_SIZE", std::to_string(ranks).c_str(), 1);
-        const Finished finished = workshop.run(joined(words, {"--rank-rows", rows}), 20);
+        const Finished finished = workshop.run(joined(words, {"--rank-rows", rows}));
         unsetenv("OMPI_COMM_WORLD_SIZE");
         EXPECT_EQ(finished.exit_code, 1);
         EXPECT_TRUE(contains(finished.err, "--rank-rows: expected " + expected)) << finished.err;

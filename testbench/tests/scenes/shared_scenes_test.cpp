@@ -1,6 +1,6 @@
 // The data that lies beside the project: the Standard Procedural Databases, OBJ scenes and the malformed
 // inputs.
-#include <chrono>
+#include <ctime>
 
 #include "scene_checks.hpp"
 
@@ -27,15 +27,14 @@ TEST_P(BadInput, GetsItsTreatmentWithinASecond) {
     const BadCase& bad = GetParam();
     const auto path = shared_scenes() / "bad" / bad.file;
     Diagnostics diagnostics;
-    const auto before = std::chrono::steady_clock::now();
+    const std::clock_t before = std::clock();
     std::string error;
     try {
         expect_sound(load_scene(path, {}, diagnostics));
     } catch (const InputError& e) {
         error = e.what();
     }
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - before;
-    EXPECT_LT(seconds.count(), 1);
+    EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 1) << "of processor time";
     const std::string messages = bad.treatment == Treatment::reject ? error : all_messages(diagnostics);
     EXPECT_EQ(error.empty(), bad.treatment != Treatment::reject) << error;
     EXPECT_NE(messages.find(bad.part), std::string::npos) << messages;

@@ -12,14 +12,15 @@ import time
 
 from expectation import expect
 
-# In place of the program: notes each run; while FOLDER/broken is there, those it names fail; waits for SECONDS.
+# In place of the program: notes each run; while FOLDER/broken is there, those it names fail; while FOLDER/held is, all
+# after the fourth wait.
 PROGRAM = """#!/bin/bash
 echo "$*" >> '{folder}/calls'
 if [ -e '{folder}/broken' ] && [[ " $* " == *"$(cat '{folder}/broken')"* ]]; then
     echo 'no luck today' >&2
     exit 2
 fi
-sleep {seconds}
+while [ -e '{folder}/held' ] && [ $(wc -l < '{folder}/calls') -gt 4 ]; do sleep 0.1; done
 exec '{program}' "$@"
 """
 # In place of Slurm's commands: jobs are processes; their state is a file.
@@ -48,10 +49,9 @@ class Test:
         self.out = self.folder / "out"
         self.environment = dict(os.environ)
 
-    def stand_in(self, name, text, **words):
+    def stand_in(self, name, text):
         path = self.folder / name
-        path.write_text(text.replace("{folder}", str(self.folder)).replace("{program}", self.program)
-                        .replace("{seconds}", words.get("seconds", "0")))
+        path.write_text(text.replace("{folder}", str(self.folder)).replace("{program}", self.program))
         path.chmod(0o755)
         return path
 
@@ -125,14 +125,16 @@ class Test:
 
     def stop(self, number):
         """Stopped half way by a signal, and begun again."""
-        program = self.stand_in("program", PROGRAM, seconds="1")
+        program = self.stand_in("program", PROGRAM)
+        held = self.folder / "held"
+        held.touch()
         sweep = subprocess.Popen(self.words("time_outs", program, []))
-        deadline = time.monotonic() + 60
         while len(self.records()) < 2:
-            expect(sweep.poll() is None and time.monotonic() < deadline, "two runs within a minute")
+            expect(sweep.poll() is None, "two runs, and then the sweep still there")
             time.sleep(0.05)
         sweep.send_signal(number)
-        expect(sweep.wait(timeout=20) == 130, f"exit code 130, not {sweep.returncode}")
+        expect(sweep.wait() == 130, f"exit code 130, not {sweep.returncode}")
+        held.unlink()
         finished = self.records()
         expect(2 <= len(finished) < RUNS, f"the sweep stopped half way, not after {len(finished)} runs")
         self.expect_tables(False)

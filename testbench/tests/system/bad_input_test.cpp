@@ -10,8 +10,8 @@
 namespace raycell::system_test {
 namespace {
 
-constexpr double most_seconds = 1;            ///< for a refusal; measured: 0.01 s and 14 MB
-constexpr double most_megabytes = 100;        ///< for a picture of 32x32 too; measured: 36 MB at most
+constexpr double most_seconds = 1;      ///< of processor time, for a refusal; measured: 0.01 s and 14 MB
+constexpr double most_megabytes = 100;  ///< for a picture of 32x32 too; measured: 36 MB at most
 constexpr double most_seconds_to_render = 5;  ///< the promise bounds refusals only; measured: 0.3 s
 
 struct BadCase {
@@ -151,7 +151,7 @@ TEST(Input, AnArrayThatNoMemoryHoldsIsRefusedAtOnce) {
     const auto scene = workshop.write(
         "ball.nff",
         "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 0.1\nresolution 8 8\nl 5 5 5\ns 0 0 0 1\n");
-    const Finished finished = workshop.render(scene, {"--cells", "4096x4096"}, "a", 20);
+    const Finished finished = workshop.render(scene, {"--cells", "4096x4096"}, "a");
     EXPECT_EQ(finished.exit_code, 1);
     EXPECT_TRUE(contains(finished.err, "--cells: ")) << finished.err;
     EXPECT_EQ(workshop.results(), std::vector<std::string>());

@@ -11,9 +11,9 @@ namespace {
 Finished run_deadlock_tb(const Workshop& workshop, const std::string& arguments) {
     const fs::path out = workshop.path() / "out.txt";
     const fs::path err = workshop.path() / "err.txt";
-    const std::string command = "cd \"" + workshop.path().string() + "\" && timeout 100 \"" +
-                                RAYCELL_DEADLOCK_TB + "\" " + arguments + " >\"" + out.string() + "\" 2>\"" +
-                                err.string() + "\"";
+    const std::string command = "cd \"" + workshop.path().string() + "\" && timeout " +
+                                std::to_string(int(ages)) + " \"" + RAYCELL_DEADLOCK_TB + "\" " + arguments +
+                                " >\"" + out.string() + "\" 2>\"" + err.string() + "\"";
     const int status = std::system(command.c_str());
     Finished finished;
     if (WIFEXITED(status)) finished.exit_code = WEXITSTATUS(status);

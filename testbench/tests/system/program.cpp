@@ -1,7 +1,6 @@
 #include "program.hpp"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -24,13 +23,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Starts a program in `folder` with its standard streams in files there; returns the child's id.
-pid_t start(const std::string& program, const Words& words, const fs::path& folder) {
+pid_t start_child(const std::string& program, const Words& words, const fs::path& folder,
+                  const std::string& errors = "stderr.txt") {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, 1, "stdout.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, 2, "stderr.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOCTTY,
+                                     0600);
     Words all = joined({program}, words);
     std::vector<char*> arguments;
     for (std::string& word : all) arguments.push_back(word.data());
@@ -42,23 +43,32 @@ pid_t start(const std::string& program, const Words& words, const fs::path& fold
     return child;
 }
 
-/// Waits for the child, killing it at the deadline.
-void await(pid_t child, double limit_seconds, Finished& finished) {
-    const auto begin = Clock::now();
-    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+/// Whether the child has ended; how goes into `finished`.
+bool has_ended(pid_t child, Finished& finished) {
     int status = 0;
     rusage usage{};
-    while (wait4(child, &status, WNOHANG, &usage) == 0) {
-        if (elapsed() > limit_seconds && !finished.timed_out) {
-            finished.timed_out = true;
-            kill(child, SIGKILL);
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    finished.seconds = elapsed();
+    if (wait4(child, &status, WNOHANG, &usage) == 0) return false;
+    const auto seconds = [](const timeval& time) {
+        return double(time.tv_sec) + double(time.tv_usec) * 1e-6;
+    };
+    finished.seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
     finished.megabytes = double(usage.ru_maxrss) * 1024e-6;  // Linux counts it in kilobytes of 1024
     if (WIFEXITED(status)) finished.exit_code = WEXITSTATUS(status);
     if (WIFSIGNALED(status)) finished.signal = WTERMSIG(status);
+    return true;
+}
+
+/// Waits for the child, killing it at the deadline; `listen` is called now and then.
+void await(pid_t child, double limit_seconds, Finished& finished, const std::function<void()>& listen = {}) {
+    const auto deadline = Clock::now() + std::chrono::duration<double>(limit_seconds);
+    while (!has_ended(child, finished)) {
+        if (Clock::now() > deadline && !finished.timed_out) {
+            finished.timed_out = true;
+            kill(child, SIGKILL);
+        }
+        if (listen) listen();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
 }
 
 }  // namespace
@@ -86,7 +96,7 @@ Finished Workshop::run(const Words& words, double limit_seconds) const {
 
 Finished Workshop::run_program(const std::string& program, const Words& words, double limit_seconds) const {
     Finished finished;
-    await(start(program, words, path_), limit_seconds, finished);
+    await(start_child(program, words, path_), limit_seconds, finished);
     finished.out = read_text(path_ / "stdout.txt");
     finished.err = read_text(path_ / "stderr.txt");
     return finished;
@@ -135,6 +145,79 @@ std::vector<std::string> Workshop::results() const {
         names.push_back(entry.path().filename());
     std::sort(names.begin(), names.end());
     return names;
+}
+
+std::map<std::string, std::string> Workshop::contents() const {
+    std::map<std::string, std::string> all;
+    for (const std::string& name : results()) all[name] = read_text(result(name));
+    return all;
+}
+
+bool Workshop::writes(const std::string& name) const {
+    std::error_code gone;  // between the two looks
+    for (const auto& entry : fs::directory_iterator(path_ / "results")) {
+        if (contains(entry.path().filename(), name + ".part") && entry.file_size(gone) > 0 && !gone)
+            return true;
+    }
+    return false;
+}
+
+void Running::start(const Workshop& workshop, const std::string& program, const Words& words, bool as_error) {
+    folder_ = workshop.path();
+    terminal_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (terminal_ < 0 || grantpt(terminal_) != 0 || unlockpt(terminal_) != 0)
+        throw std::runtime_error("no terminal can be had");
+    fcntl(terminal_, F_SETFL, O_NONBLOCK);
+    const std::string name = ptsname(terminal_);
+    kept_open_ = open(name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);  // without anybody there, reading fails
+    child_ = as_error ? start_child(program, words, folder_, name)
+                      : start_child(program, joined(words, {name}), folder_);
+}
+
+Running::Running(const Workshop& workshop, const std::string& program, const Words& words) {
+    start(workshop, program, words, true);
+}
+
+Running::Running(const Workshop& workshop, const std::string& program, const Words& words, NamedTerminal) {
+    start(workshop, program, words, false);
+}
+
+Running::~Running() {
+    if (!over_) {
+        kill(child_, SIGKILL);
+        await(child_, ages, finished_);
+    }
+    close(kept_open_);
+    close(terminal_);
+}
+
+void Running::listen() {
+    char bytes[4096];
+    for (ssize_t count; (count = read(terminal_, bytes, sizeof bytes)) > 0;)
+        finished_.err.append(bytes, std::size_t(count));
+}
+
+bool Running::waits_for(const std::function<bool()>& there) {
+    const auto deadline = Clock::now() + std::chrono::duration<double>(ages);
+    while (!there()) {
+        if (!over_) over_ = has_ended(child_, finished_);
+        listen();
+        if (over_ || Clock::now() > deadline) return there();
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    return true;
+}
+
+bool Running::says(const std::string& part) {
+    return waits_for([&] { return contains(finished_.err, part); });
+}
+
+Finished Running::finish() {
+    if (!over_) await(child_, ages, finished_, [this] { listen(); });
+    over_ = true;
+    listen();
+    finished_.out = read_text(folder_ / "stdout.txt");
+    return finished_;
 }
 
 std::string read_text(const fs::path& path) {

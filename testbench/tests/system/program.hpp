@@ -2,8 +2,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -25,13 +29,16 @@ struct Finished {
     int exit_code = -1;  ///< -1 where a signal ended it
     int signal = 0;
     bool timed_out = false;  ///< it was killed because it took longer than allowed
-    double seconds = 0;      ///< wall time
+    double seconds = 0;      ///< of processor time: other work beside it hardly changes it
     double megabytes = 0;    ///< largest resident set, 10^6 bytes
     std::string out;
     std::string err;
 
     std::size_t error_lines() const;
 };
+
+/// Wall seconds after which a child hangs, however busy the machine is.
+constexpr double ages = 900;
 
 /// A fresh folder in which the program is started, removed at the end. Results go to its `results` folder,
 /// which holds nothing else.
@@ -43,12 +50,12 @@ class Workshop {
     Workshop& operator=(const Workshop&) = delete;
 
     /// Runs `raycell words...`; after `limit_seconds` the child is killed.
-    Finished run(const Words& words, double limit_seconds = 100) const;
+    Finished run(const Words& words, double limit_seconds = ages) const;
     /// The same for another program, by its path.
-    Finished run_program(const std::string& program, const Words& words, double limit_seconds = 100) const;
+    Finished run_program(const std::string& program, const Words& words, double limit_seconds = ages) const;
     /// Runs `raycell render scene --quiet -o results/NAME words...`.
     Finished render(const fs::path& scene, const Words& words, const std::string& name = "a",
-                    double limit_seconds = 100) const;
+                    double limit_seconds = ages) const;
     /// The same, expected to end with `exit_code`; returns NAME.json, checked for sense, and null without it.
     Json report(const fs::path& scene, const Words& words, int exit_code = 0,
                 const std::string& name = "a") const;
@@ -58,11 +65,47 @@ class Workshop {
     fs::path result(const std::string& name) const { return path_ / "results" / name; }
     /// Names of the files in results/, sorted.
     std::vector<std::string> results() const;
+    /// Their contents, by name.
+    std::map<std::string, std::string> contents() const;
+    /// Whether one of that name is being written, or waits to get it.
+    bool writes(const std::string& name) const;
     /// The same without what is there only where something waits, locked or was destroyed.
     std::vector<std::string> usual_results() const;
 
   private:
     fs::path path_;
+};
+
+/// A child process while it runs. Its standard error is a terminal, so it shows its progress.
+class Running {
+  public:
+    Running(const Workshop& workshop, const std::string& program, const Words& words);
+    /// The same with the terminal's name as the last word, and not as standard error.
+    struct NamedTerminal {};
+    Running(const Workshop& workshop, const std::string& program, const Words& words, NamedTerminal);
+    ~Running();
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+
+    pid_t id() const { return child_; }
+    /// Waits until it has said this; false if it ended without.
+    bool says(const std::string& part);
+    /// Waits until this is so; false if it ended without.
+    bool waits_for(const std::function<bool()>& there);
+    void send(int signal) const { kill(child_, signal); }
+    /// Waits for its end.
+    Finished finish();
+
+  private:
+    void start(const Workshop& workshop, const std::string& program, const Words& words, bool as_error);
+    void listen();
+
+    fs::path folder_;
+    int terminal_ = -1;   ///< our end
+    int kept_open_ = -1;  ///< the child's end
+    pid_t child_ = 0;
+    bool over_ = false;
+    Finished finished_;
 };
 
 std::string read_text(const fs::path& path);

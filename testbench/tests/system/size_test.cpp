@@ -255,7 +255,7 @@ void expect_refused(const Words& words, const std::string& part) {
     for (const std::string& word : words) line += " '" + word + "'";
     SCOPED_TRACE(line);
     workshop.write("wrong.toml", "psnr = 300\n");
-    const Finished finished = workshop.run(joined({"size"}, words), 30);
+    const Finished finished = workshop.run(joined({"size"}, words));
     EXPECT_EQ(finished.exit_code, 1) << finished.err;
     EXPECT_EQ(finished.out, "");
     EXPECT_TRUE(contains(finished.err, part)) << "no '" << part << "' in: " << finished.err;

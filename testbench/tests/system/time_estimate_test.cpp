@@ -88,7 +88,7 @@ TEST(Foretold, OfTreesThatHardlyEndTakesNoTime) {
     const Workshop workshop;
     const Words words{"--cells", "16x16", "--max-depth", "62", "--min-weight", "0", "--max-cycles", "10"};
     const Finished finished = workshop.render(own_scene("still_life.nff"), words);
-    EXPECT_LT(finished.seconds, sanitized ? 60 : 5);
+    EXPECT_LT(finished.seconds, sanitized ? 60 : 10) << "of processor time; measured: 0.5";
     const Json report = Json::parse(read_text(workshop.result("a.json")));
     // A usual pixel of this scene takes 20 hops there.
     EXPECT_GT(report.at("model").at("expected").at("hops").at("trace"), 16 * 16 * 1000);
