@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <systemc>
 
+#include "model/losses.hpp"
 #include "testbench/loading/random_scene.hpp"
 #include "testbench/loading/report.hpp"
 #include "testbench/loading/tap.hpp"
