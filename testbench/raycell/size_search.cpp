@@ -14,9 +14,6 @@ constexpr int threads = 2;
 /// longer ones. Beyond so many bits (tolerance 0.002 cells) the longer word stores more.
 constexpr int most_rough_words = 13;
 
-/// So many word lengths are tried of a setting whose longest words miss the goal by little.
-constexpr int most_tried_in_vain = 4;
-
 SizeSetting with_words(SizeSetting setting, int word_bits) {
     setting.word_bits = word_bits;
     return setting;
@@ -158,10 +155,8 @@ void SizeSearch::search_words(const SizeSetting& setting, const std::vector<int>
             }
         }
     }
-    // Shorter words may be lucky. Where not even the longest meet the goal, a few of them show whether any are.
-    const bool in_vain = enough == int(words.size());
-    for (int i = enough - 1; i >= (in_vain ? enough - most_tried_in_vain : 0); --i) {
-        if (i < 0 || !goal_.nearly_met_by(trial(at(i)).accuracy)) break;
+    for (int i = enough - 1; i >= 0; --i) {
+        if (!goal_.nearly_met_by(trial(at(i)).accuracy)) break;
     }
     for (int i = enough + 1; i < int(words.size()) && words[std::size_t(i)] <= most_rough_words; ++i) {
         if (cost_of(model_.storage(at(i))) < cost_of(tried_[*best_].storage)) run_all({at(i)});
