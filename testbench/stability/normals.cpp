@@ -60,9 +60,11 @@ void shoot(const Facet& facet, const NumberSettings& numbers, bool at_zero_line,
     }
 }
 
-std::string name_of(const OperatorSettings& operators) {
+std::string root_of(const NumberSettings& numbers) {
+    const OperatorSettings& operators = numbers.operators;
     if (operators.root == Iteration::rounded) return "rounded";
-    return text("%s %d", operators.root == Iteration::newton ? "newton" : "table", operators.root_table);
+    return text("%s %d", operators.root == Iteration::newton ? "newton" : "table",
+                table_sizes(operators, numbers.word_bits).root);
 }
 
 std::vector<NumberSettings> variants() {
@@ -99,7 +101,7 @@ Report study_normals(const Effort& effort) {
         }
         const bool exact = numbers.arithmetic == Numbers::exact;
         report.table.add({stability::name_of(numbers),
-                          exact ? std::string("exact") : name_of(numbers.operators), opening,
+                          exact ? std::string("exact") : root_of(numbers), opening,
                           outcome.angle.count(), at_zero_line ? "zero line" : "anywhere",
                           outcome.length.largest(), outcome.angle.largest(), outcome.angle.mean(),
                           outcome.fell_back.percent(), outcome.not_numbers});
@@ -109,7 +111,7 @@ Report study_normals(const Effort& effort) {
     for (const NumberSettings& numbers : variants()) {
         const Outcome outcome = measure(numbers, 60, false);
         const bool standard =
-            numbers.operators.root == Iteration::newton && numbers.operators.root_table == 64;
+            numbers.operators.root == Iteration::newton && numbers.operators.root_table == 0;
         if (numbers.arithmetic == Numbers::fixed && numbers.word_bits == 20 && standard) {
             angle_20 = outcome.angle.largest();
             length_20 = outcome.length.largest();

@@ -79,7 +79,7 @@ TEST(Usage, WholeNumbersOutOfRangeAreRefused) {
         {"ray-store", {"0", "-1", "1025"}},
         {"buffer", {"0", "-1", "1025"}},
         {"link-bits", {"0", "-1", "4097"}},
-        {"reciprocal-table", {"0", "2", "8192"}},
+        {"reciprocal-table", {"1", "2", "8192"}},
         {"root-table", {"-64", "3", "4097"}},
         {"power-table", {"1", "5000"}},
         {"max-cycles", {"-1", "4611686018427387905"}},

@@ -100,7 +100,7 @@ TEST(Options, OfNumbersEachDoWhatTheySay) {
         {{"--normal-offset", "-0.5"}, {}, false, false},
         {{"--normal-offset", "3.0517578125e-05"}, {}, false, false},
         {{"--normal-offset", "0.02"}, {}, true, false},
-        {{"--arithmetic", "exact", "--normal-offset", "1e-8"}, {"--arithmetic", "exact"}, false, false},
+        {{"--arithmetic", "exact", "--normal-offset", "0"}, {"--arithmetic", "exact"}, false, false},
     };
     for (const Effect& effect : effects) {
         std::string line;
