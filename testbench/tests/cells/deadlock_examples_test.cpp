@@ -107,7 +107,7 @@ TEST(TimedDeadlockExamples, ARayThatWaitsForASlotAtTheHeadOfABufferLocksWherePos
 }
 
 TEST(TimedDeadlockExamples, FreeSlotsAreALivelockWhereReservedAndNestedOnesEnd) {
-    const Variants run = of_own_scene("still_life", 12, 2,
+    const Variants run = of_own_scene("still_life", 18, 2,
                                       {[](MachineSettings& m) { m.ray_store = 3, m.slots = Slots::free; },
                                        [](MachineSettings& m) { m.ray_store = 3; },
                                        [](MachineSettings& m) { m.ray_store = 3, m.slots = Slots::nested; }});

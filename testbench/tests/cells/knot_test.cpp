@@ -133,7 +133,9 @@ TEST(TimeOut, AlarmsInACellOfEveryKnotOfBuffersWhatIsProvedLocked) {
         EXPECT_EQ(each.knot_alarms, each.knot_cells) << "a buffer of the ring waits in each of its cells";
         EXPECT_EQ(each.missed_knots, 0u);
         EXPECT_LE(each.false_alarms, false_before) << "longer time-outs are more patient";
-        EXPECT_LE(each.first_alarm_delay, std::int64_t(each.cycles));
+        // What else passes through the knot's cells may put off the alarm, until nothing moves any more.
+        EXPECT_LE(each.first_alarm_delay,
+                  std::int64_t(each.cycles + stuck.result.ended - stuck.result.knot_formed));
         false_before = each.false_alarms;
     }
     EXPECT_GT(stuck.result.time_outs.front().false_alarms, 0u) << "16 cycles are too hasty";

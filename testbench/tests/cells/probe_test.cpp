@@ -192,7 +192,7 @@ TEST(TimedProbe, ShowsEveryBufferOfFourClassesAsItsSendsAndPopsSay) {
 }
 
 TEST(TimedProbe, AWindowHasTheWholeRunsValuesInItsCyclesAndNoOthers) {
-    const ProbeSettings window{218900, 220345, 1024000000};
+    const ProbeSettings window{217000, 220345, 1024000000};
     Probed probed("still_life", 16, {{12, 10}}, window, [](MachineSettings&) {});
     // The second watcher of the same run sees all of it.
     std::FILE* whole_file = std::tmpfile();
@@ -264,7 +264,7 @@ TEST(TimedProbe, HeadsInADeadlockOfSharedBuffersWaitForRoomAndForNothingThatPass
 }
 
 TEST(TimedProbe, HeadsInADeadlockOfFullRayStoresWaitForSlots) {
-    Probed probed("facing_mirrors", 24, all_cells(24), ProbeSettings(), [](MachineSettings& m) {
+    Probed probed("facing_mirrors", 28, all_cells(28), ProbeSettings(), [](MachineSettings& m) {
         m.ray_store = 1;
         m.recovery = Recovery::none;
     });
