@@ -11,6 +11,17 @@ void OptionTable::text(const std::string& name, std::string& target, const std::
     entries_.push_back({name, [&target] { return nlohmann::ordered_json(target); }});
 }
 
+void OptionTable::table_size(const std::string& name, int& target, const std::string& help) {
+    number(name, target, 0, 4096, help);
+    const auto check = [](const std::string& word) -> std::string {
+        int entries = 0;
+        if (parse_number(word, entries) && (entries == 0 || (entries >= 4 && (entries & (entries - 1)) == 0)))
+            return "";
+        return "expected 0 or a power of two from 4 to 4096, not '" + printable(word) + "'";
+    };
+    app_.get_option("--" + name)->check(CLI::Validator(check, ""));
+}
+
 void OptionTable::positional(const std::string& name, std::string& target, const std::string& help) {
     app_.add_option_function<std::string>(
             name, [&target](const std::string& word) { target = word; }, help)
@@ -323,10 +334,10 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
                   {"schlick", PowerMethod::schlick},
                   {"rounded", PowerMethod::rounded}},
                  "Phong's power: by log2 and exp2 tables, Schlick's fraction, or digit by digit");
-    table.number("reciprocal-table", o.reciprocal_table, 0, 4096,
-                 "its entries, a power of two from 4; 0: what the word length needs, 64 at 20 bits");
-    table.number("root-table", o.root_table, 0, 4096, "the same; 0: 64 at 20 bits");
-    table.number("power-table", o.power_table, 0, 4096, "the same, of each of its two tables; 0: 32 at 20 bits");
+    table.table_size("reciprocal-table", o.reciprocal_table,
+                     "its entries, a power of two from 4; 0: what the word length needs, 64 at 20 bits");
+    table.table_size("root-table", o.root_table, "the same; 0: 64 at 20 bits");
+    table.table_size("power-table", o.power_table, "the same, of each of its two tables; 0: 32 at 20 bits");
     add_communication_options(table, m);
     table.number("normal-offset", p.normal_offset, -1.0, 1.0,
                  "start of secondary rays off their polygon, cells; negative: what suits the arithmetic");

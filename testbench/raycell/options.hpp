@@ -51,6 +51,8 @@ class OptionTable {
     /// A whole or real number from least to most.
     template <typename T>
     void number(const std::string& name, T& target, T least, T most, const std::string& help);
+    /// Entries of an operator's table: a power of two from 4 to 4096, or 0.
+    void table_size(const std::string& name, int& target, const std::string& help);
     void text(const std::string& name, std::string& target, const std::string& type, const std::string& help);
     /// A word without a dash in front; not part of the configuration.
     void positional(const std::string& name, std::string& target, const std::string& help);

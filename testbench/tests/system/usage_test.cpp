@@ -120,8 +120,8 @@ TEST(Usage, WordsThatNoChoiceOffersAreRefused) {
 TEST(Usage, TablesWhoseSizeIsNoPowerOfTwoAreRefused) {
     for (const std::string table : {"reciprocal", "root", "power"}) {
         for (const std::string size : {"5", "6", "63", "100", "4095"}) {
-            expect_each_refused(
-                {{{"--" + table + "-table", size}, table + " table of " + size + " entries"}});
+            expect_each_refused({{{"--" + table + "-table", size},
+                                  "--" + table + "-table: expected 0 or a power of two from 4 to 4096"}});
         }
     }
 }
