@@ -14,6 +14,7 @@ DEPTHS = [64, 256, 1024, 4096]
 FRONT_CELLS, FULL_CELLS = 64, 128
 SIZES = [32, 64, 128, 256]
 TABLE_SIZES = [16, 32, 64, 128, 256]
+SIZES_AT_20_BITS = {"reciprocal": 64, "root": 64, "power": 32}  # which the program takes by itself
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,9 +33,9 @@ class Configuration:
     reciprocal: str = "newton"
     root: str = "newton"
     power: str = "tables"
-    reciprocal_table: int = 64
-    root_table: int = 64
-    power_table: int = 32
+    reciprocal_table: int = 0  # what the word length needs
+    root_table: int = 0
+    power_table: int = 0
 
     def operators(self):
         """The factors of the number section that differ from the default, as (name, value)."""
@@ -69,8 +70,9 @@ def operator_variants(scene, cells):
         variants += [at(reciprocal=method), at(root=method)]
     variants += [at(power=method) for method in ["schlick", "rounded"]]
     for size in TABLE_SIZES:
-        variants += [at(reciprocal="table", reciprocal_table=size), at(root="table", root_table=size),
-                     at(power_table=size)]
+        sized = {"reciprocal": at(reciprocal="table", reciprocal_table=size),
+                 "root": at(root="table", root_table=size), "power": at(power_table=size)}
+        variants += [variant for operator, variant in sized.items() if size != SIZES_AT_20_BITS[operator]]
     return variants + [at(rounding="truncate")]
 
 

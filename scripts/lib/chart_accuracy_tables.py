@@ -1,5 +1,5 @@
 """results/accuracy.md: every table of it from the rows of accuracy.csv."""
-from chart_accuracy_design import (OPERATOR_SCENES, OWN_SCENES, RUNGS, SHADOWS, Configuration,
+from chart_accuracy_design import (OPERATOR_SCENES, OWN_SCENES, RUNGS, SHADOWS, SIZES_AT_20_BITS, Configuration,
                                    operator_variants)
 from chart_accuracy_rows import fewest_bits, name_of, pareto
 from sweep_tables import NOTHING, count, table
@@ -117,7 +117,8 @@ def variant_name(variant):
     if operator == "rounding":
         return f"rounding `{variant.rounding}`"
     method = getattr(variant, operator)
-    size = f" ({getattr(variant, operator + '_table')})" if method in ("newton", "table", "tables") else ""
+    entries = getattr(variant, operator + "_table") or SIZES_AT_20_BITS[operator]
+    size = f" ({entries})" if method in ("newton", "table", "tables") else ""
     return f"{operator} `{method}`{size}"
 
 
