@@ -169,5 +169,50 @@ TEST(RangeWarnings, SayHowFarRaysMayGoAstrayInADeepCubeOfShortWords) {
     EXPECT_TRUE(contains(far, "words of 8 bits: rays may be off by 0.")) << far;
 }
 
+// ---- losses
+
+TEST(Losses, AreCountedByCauseAndThePictureIsComparedWithTheTruthAtSomePixels) {
+    const Workshop workshop;
+    const Json fixed = workshop.report(own_scene("still_life.nff"), {"--cells", "24x24"}).at("losses");
+    EXPECT_GT(fixed.at("drift_cells").get<double>(), 0);
+    EXPECT_GT(fixed.at("exterior_rays").get<int>(), 0);
+    EXPECT_EQ(fixed.at("sample").at("pixels"), 512);
+    EXPECT_GT(fixed.at("sample").at("psnr_db").get<double>(), 50);
+    EXPECT_LT(fixed.at("sample").at("psnr_db").get<double>(), 200);
+    const Json exact =
+        workshop.report(own_scene("cornell.nff"), {"--cells", "16x16", "--arithmetic", "exact"}).at("losses");
+    EXPECT_EQ(exact.at("drift_cells"), 0);
+    EXPECT_EQ(exact.at("sample").at("pixels"), 256) << "all that there are";
+    EXPECT_EQ(exact.at("sample").at("psnr_db"), 200) << "equal";
+    EXPECT_GT(exact.at("ties").get<int>(), 0) << "walls that meet on the diagonals";
+    const Json loaded =
+        workshop.report(own_scene("cornell.nff"), {"--cells", "16x16", "--stage", "load"}).at("losses");
+    EXPECT_TRUE(loaded.at("sample").at("psnr_db").is_null());
+}
+
+TEST(Losses, AreTheSameTimedAndUntimed) {
+    const Workshop workshop;
+    const Words words = {"--cells", "20x20", "--ray-store", "16"};
+    Json timed = workshop.report(own_scene("still_life.nff"), words).at("losses");
+    Json untimed =
+        workshop.report(own_scene("still_life.nff"), joined(words, {"--engine", "untimed"}), 0, "b")
+            .at("losses");
+    EXPECT_EQ(timed, untimed);
+}
+
+TEST(Losses, OfWordsTooShortForASceneAreSaidAfterTheRunWhereNothingElseIsTheReason) {
+    const auto said = [](const Words& words) {
+        const Workshop workshop;
+        const Finished finished = workshop.run(joined(
+            {"render", own_scene("still_life.nff").string(), "--cells", "24x24", "-o", "results/a"}, words));
+        EXPECT_EQ(finished.exit_code, 0) << finished.err;
+        return contains(finished.err, "sampled pixels are");
+    };
+    EXPECT_TRUE(said({"--word-bits", "10"}));
+    EXPECT_FALSE(said({"--word-bits", "10", "--quiet"}));
+    EXPECT_FALSE(said({}));
+    EXPECT_FALSE(said({"--word-bits", "10", "--hit", "plane"})) << "the rung costs more than the words";
+}
+
 }  // namespace
 }  // namespace raycell::system_test
