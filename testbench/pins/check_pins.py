@@ -20,7 +20,10 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 EXPECTED = HERE / "expected.json"
 SCENES = HERE.parent.parent / "scenes"
-DIGESTED = (".cells.csv", ".ledger.csv", ".vcd")
+DIGESTED = (".cells.csv", ".ledger.csv", ".vcd", ".waits.json")
+# Of the report, all that is counted in whole numbers: what a library's last bits could change is left out.
+COUNTED = ("stages", "units", "hops", "precast", "rays", "messages", "voxels", "message_bits", "storage_bits", "formats",
+           "ray_store", "buffers", "deadlock", "activity", "loading")
 # More ranks than cores, and root, have to be allowed.
 MPIRUN = ["mpirun", "-q", "--oversubscribe", "-np"]
 MAY_BE_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -45,8 +48,8 @@ def command_of(words, programs, prefix):
     return [*launcher, str(programs / words[0]), *words[1:], "--quiet", "-o", prefix]
 
 
-def digest(path):
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+def digest(data):
+    return hashlib.sha256(data).hexdigest()[:16]
 
 
 def run(words, programs):
@@ -61,10 +64,12 @@ def run(words, programs):
         pin = {"exit_code": done.returncode, "verdict": results["verdict"]}
         pin["cycles"] = {phase: results["cycles"][phase] for phase in ("load", "precast", "trace")}
         pin["hash"] = results["hash"]
+        counted = {key: results[key] for key in COUNTED if key in results}
+        pin["report"] = digest(json.dumps(counted, sort_keys=True).encode())
         for suffix in DIGESTED:
             path = pathlib.Path(folder, "pin" + suffix)
             if path.exists():
-                pin[suffix[1:]] = digest(path)
+                pin[suffix[1:]] = digest(path.read_bytes())
         return pin
 
 

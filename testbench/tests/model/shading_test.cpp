@@ -141,5 +141,25 @@ TEST(Shading, CombinesWithTheSharesOfMirrorAndTransmission) {
     EXPECT_LT(glm::length(combine_intensity(local, m, mirrored, through) - dvec3(0.1 + 0.3 * 0.25)), 1e-15);
 }
 
+TEST(Shading, ARayThatIsJustBentAlongTheSurfaceIsNotReflectedTotally) {
+    ShadePoint point;
+    point.direction = {1, 0, 0};
+    point.normal = {0, 0, -1};
+    dvec3 bent(0);
+    EXPECT_TRUE(refract_direction(point, 1, bent));
+    EXPECT_EQ(bent, dvec3(1, 0, 0));
+    EXPECT_EQ(transmit_direction(point, 1), dvec3(1, 0, 0));
+}
+
+TEST(Costs, OfSchlicksPowerHoldAReciprocalByItsOwnMethod) {
+    const CostTable costs;
+    for (const Iteration method : {Iteration::newton, Iteration::table, Iteration::rounded}) {
+        OperatorSettings operators;
+        operators.power = PowerMethod::schlick;
+        operators.reciprocal = method;
+        EXPECT_EQ(costs.power(operators), costs.power_schlick + costs.reciprocal(operators));
+    }
+}
+
 }  // namespace
 }  // namespace raycell
