@@ -160,51 +160,6 @@ TEST_P(TimedStarvationBound, ARayGoesNoEarlierBecauseAnOlderOneMakesTheCellLook)
     }
 }
 
-/// Where rays and answers share a buffer, an answer is seen only when the ray before it has gone.
-TEST(TimedStarvationOfSharedBuffers, AnAnswerBehindAnOverdueRayGoesInTheSameEpoch) {
-    MachineSettings machine;
-    machine.networks = Networks::shared;
-    machine.link_bits = 512;  // a message takes one cycle
-    machine.buffer_depth = 4;
-    LoneCell lone(machine, LoneCell::empty(10));
-    const Environment& env = *lone.environment;
-    Answer streaming;
-    streaming.home_x = 2;
-    streaming.home_y = 1;
-    streaming.kind = Answer::Kind::postponed;
-    streaming.child = 1;
-    Answer behind = streaming;
-    behind.child = 2;
-    Link& west = lone.from(Side::west);
-    Link& south = lone.from(Side::south);
-    Link& east = lone.towards(Side::east);
-    const Ray ray = ray_from_south({0.9, 1, 7}, glm::normalize(dvec3(1, -0.1, 0)));
-    bool sent = false;
-    Cycle ray_went = 0;
-    Cycle answer_went = 0;
-    lone.run(200000, [&](Cycle now) {
-        Cycle retry = never;
-        if (west.can_send(env.classes.answer, retry)) lone.send(west, streaming);
-        if (now == 100) lone.send(south, ray);
-        if (now > 100 && !sent && south.can_send(env.classes.answer, retry)) {
-            lone.send(south, behind);
-            sent = true;
-        }
-        for (int index = 0; index < env.classes.count; ++index) {
-            const Message front = east.front(index);
-            if (front.kind == Message::Kind::none) continue;
-            if (front.kind == Message::Kind::ray) ray_went = now;
-            if (front.kind == Message::Kind::answer && front.answer->child == 2) answer_went = now;
-            lone.drop(east, index);
-        }
-    });
-    EXPECT_GE(ray_went, 73728u)
-        << "the ninth epoch, the first that begins more than 65536 cycles after its test";
-    EXPECT_LT(ray_went, 73728u + 16);
-    EXPECT_GT(answer_went, ray_went);
-    EXPECT_LT(answer_went, ray_went + 16);
-}
-
 INSTANTIATE_TEST_SUITE_P(TestedIn, TimedStarvationBound,
                          ::testing::Values(110, 8191, 8192, 8193, 16383, 16384));
 
