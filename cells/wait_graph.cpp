@@ -128,9 +128,7 @@ void WaitGraph::find_knots() {
 }
 
 std::uint64_t WaitGraph::formed(const std::vector<Index>& knot) const {
-    std::uint64_t latest = 0;
-    for (const Index i : knot) latest = std::max(latest, nodes_[i].since);
-    return latest;
+    return nodes_[knot.back()].since;  // its nodes are in that order
 }
 
 }  // namespace raycell

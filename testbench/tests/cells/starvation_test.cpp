@@ -160,6 +160,117 @@ TEST_P(TimedStarvationBound, ARayGoesNoEarlierBecauseAnOlderOneMakesTheCellLook)
     }
 }
 
+/// The kind of message that starts first over the east output when both its buffers, full since cycle 1, are
+/// read in cycle `opens`: all that waits for them has been overdue for long.
+Message::Kind first_when_it_opens(LoneCell& lone, const std::function<void(Cycle)>& script) {
+    constexpr Cycle opens = 100000;
+    const Environment& env = *lone.environment;
+    Link& east = lone.towards(Side::east);
+    const Ray passing = lone_ray({0, 0.5, 7}, {1, 0, 0});
+    const int ways[] = {env.classes.ray(passing), env.classes.answer};
+    Message::Kind first = Message::Kind::none;
+    lone.run(opens + 100, [&](Cycle now) {
+        if (now == 1) lone.send(east, passing);
+        if (now == 2) lone.send(east, Answer());
+        script(now);
+        for (const int index : ways) {
+            if (now < opens || east.front(index).kind == Message::Kind::none) continue;
+            if (now > opens && first == Message::Kind::none) first = east.front(index).kind;
+            lone.drop(east, index);
+        }
+    });
+    return first;
+}
+
+MachineSettings roomy() {
+    MachineSettings machine;
+    machine.link_bits = 1000;  // every message takes one cycle
+    machine.buffer_depth = 1;
+    machine.ray_store = 4;
+    machine.slots = Slots::free;
+    return machine;
+}
+
+/// A ray that passes is tested so many cycles after an answer came in whose routing takes 50.
+Message::Kind beside_an_answer(Cycle later) {
+    MachineSettings machine = roomy();
+    machine.costs.route_return = 50;
+    LoneCell lone(machine, LoneCell::empty(10));
+    return first_when_it_opens(lone, [&, later](Cycle now) {
+        Answer answer;
+        answer.home_x = 2;
+        answer.home_y = 1;
+        if (now == 100) lone.send(lone.from(Side::west), answer);
+        if (now == 100 + later - machine.costs.walk_step)
+            lone.send(lone.from(Side::south), ray_from_south({0.9, 1, 7}, glm::normalize(dvec3(1, -0.1, 0))));
+    });
+}
+
+TEST(TimedStarvationOrder, AnAnswerIsAsOldAsTheEndOfItsRouting) {
+    EXPECT_EQ(beside_an_answer(49), Message::Kind::ray);
+}
+
+TEST(TimedStarvationOrder, AnAnswerRoutedBeforeARayIsTestedGoesFirst) {
+    EXPECT_EQ(beside_an_answer(51), Message::Kind::answer);
+}
+
+/// A wall whose hits need a slot, for the source that it turns its back on, and are complete once set up.
+CellScene turned_away() {
+    CellScene scene = walled();
+    Source behind;
+    behind.position = {1.5, 1.5, 9};
+    scene.sources.push_back(behind);
+    return scene;
+}
+
+const Ray hits_wall = ray_from_south({0.5, 1, 4.9}, glm::normalize(dvec3(0, -0.1, 1)));
+
+/// A ray that passes comes in so many cycles after one that hits and whose shading takes a thousand.
+Message::Kind beside_a_reply(Cycle later) {
+    MachineSettings machine = roomy();
+    machine.costs.shade_setup = 1000;
+    LoneCell lone(machine, turned_away());
+    return first_when_it_opens(lone, [&, later](Cycle now) {
+        if (now == 100) lone.send(lone.from(Side::south), hits_wall);
+        if (now == 100 + later)
+            lone.send(lone.from(Side::south), ray_from_south({0.9, 1, 2}, glm::normalize(dvec3(1, -0.1, 0))));
+    });
+}
+
+TEST(TimedStarvationOrder, AReplyIsAsOldAsTheEndOfItsShading) {
+    EXPECT_EQ(beside_a_reply(500), Message::Kind::ray);
+}
+
+TEST(TimedStarvationOrder, AReplyShadedBeforeARayIsTestedGoesFirst) {
+    EXPECT_EQ(beside_a_reply(5000), Message::Kind::answer);
+}
+
+TEST(TimedStarvationOrder, RepliesAndAnswersThatPassTakeTurns) {
+    MachineSettings machine = roomy();
+    machine.buffer_depth = 4;
+    LoneCell lone(machine, turned_away());
+    const Environment& env = *lone.environment;
+    Link& east = lone.towards(Side::east);
+    constexpr Cycle opens = 5000;
+    Answer passing;
+    passing.home_x = 2;
+    passing.home_y = 1;
+    passing.child = 1;
+    std::string order;
+    lone.run(opens + 100, [&](Cycle now) {
+        if (now <= 4) lone.send(east, Answer());
+        if (now == 100 || now == 300 || now == 500) {
+            lone.send(lone.from(Side::south), hits_wall);
+            lone.send(lone.from(Side::west), passing);
+        }
+        const Message front = east.front(env.classes.answer);
+        if (now < opens || front.kind != Message::Kind::answer) return;
+        if (now >= opens + 4) order += front.answer->child == 1 ? "A" : "R";
+        lone.drop(east, env.classes.answer);
+    });
+    EXPECT_TRUE(order == "ARARAR" || order == "RARARA") << order;
+}
+
 INSTANTIATE_TEST_SUITE_P(TestedIn, TimedStarvationBound,
                          ::testing::Values(110, 8191, 8192, 8193, 16383, 16384));
 

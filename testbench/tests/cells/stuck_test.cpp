@@ -78,6 +78,24 @@ TEST(TimedVerdict, BeyondTheLimitOfCyclesWhileTracingIsCycleLimit) {
     stopped.expect_conserved();
 }
 
+TEST(TimedVerdict, OfARunCutShortNamesTheFewExteriorProcessorsThereAreAndSinceWhenEachIsDone) {
+    constexpr int latency = 100;
+    Stuck stopped("still_life", [](PictureSettings&, MachineSettings& m) {
+        m.exterior_processors = 2;
+        m.exterior_latency = latency;
+        m.max_cycles = 290000;
+    });
+    ASSERT_EQ(name_of(stopped.result.verdict), std::string("cycle_limit"));
+    EXPECT_GT(stopped.result.exterior.items, 100u) << "each was used many times";
+    std::set<std::string> names;
+    for (const WaitGraph::Node& node : stopped.result.waits.nodes()) {
+        if (node.kind != WaitGraph::Kind::processor) continue;
+        names.insert(node.what);
+        EXPECT_GT(node.since + 2 * latency, stopped.result.ended);
+    }
+    EXPECT_EQ(names, (std::set<std::string>{"exterior processor 0", "exterior processor 1"}));
+}
+
 TEST(TimedVerdict, ALimitThatIsJustLongEnoughIsNoLimit) {
     expect_first_elaboration();
     const CellScene scene = hand_made::cube(1, 1, 8);

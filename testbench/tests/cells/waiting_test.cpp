@@ -6,8 +6,9 @@
 namespace raycell {
 namespace {
 
-/// An empty cell.
+/// An empty cell, if no scene is given.
 struct EmptyCell : LoneCell {
+    using LoneCell::LoneCell;
     void send_answer(Link& link, int home_x, int cycles = 1) {
         Answer answer;
         answer.home_x = std::uint16_t(home_x);
@@ -98,6 +99,25 @@ TEST(CellWaiting, AnAnswerWaitsForRoomFromItsRoutingOn) {
     EXPECT_EQ(cycles_of(s, Stall::answer_full), 31u - 3u);
     EXPECT_EQ(all_cycles(s), 31u - 3u);
     EXPECT_EQ(s.return_hops, 1u);
+}
+
+TEST(CellWaiting, AnAnswerThatNeverLeavesTheShadingUnitCountsUpToTheEnd) {
+    CellScene wall = LoneCell::empty(10);
+    hand_made::add_rectangle(wall, hand_made::add_object(wall, hand_made::glowing(dvec3(0.5))), {1, 1, 5},
+                             {0, 1, 0}, {1, 0, 0});
+    EmptyCell cell({}, wall);
+    const CellStatistics s = cell.run(1000, false, [&](Cycle now) {
+        if (now != 1) return;
+        Ray ray = lone_ray({0.5, 1, 4.9}, glm::normalize(dvec3(0, -0.1, 1)));
+        ray.home_x = 2;
+        ray.home_y = 1;
+        ray.fresh = false;
+        cell.send(cell.from(Side::south), ray);
+        cell.send_answer(cell.east_out(), 2);
+    });
+    EXPECT_GT(s.shading_cycles, 0u);
+    EXPECT_EQ(cycles_of(s, Stall::answer_full), 1000 - (2 + s.traversal_cycles + s.shading_cycles));
+    EXPECT_EQ(all_cycles(s), cycles_of(s, Stall::answer_full));
 }
 
 TEST(CellWaiting, AFreeWayIsNoWaiting) {
