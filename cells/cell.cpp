@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "model/stall.hpp"
+#include "model/machine/stall.hpp"
 
 namespace raycell {
 

@@ -8,12 +8,12 @@
 
 #include "cells/cell_host.hpp"
 #include "cells/cell_view.hpp"
+#include "cells/channels/link.hpp"
+#include "cells/deadlock/wait_map.hpp"
 #include "cells/environment.hpp"
-#include "cells/fetch_line.hpp"
-#include "cells/link.hpp"
-#include "cells/ray_store.hpp"
-#include "cells/time_out.hpp"
-#include "cells/wait_map.hpp"
+#include "cells/memory/fetch_line.hpp"
+#include "cells/units/ray_store.hpp"
+#include "cells/units/time_out.hpp"
 
 namespace raycell {
 

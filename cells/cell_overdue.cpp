@@ -1,4 +1,4 @@
-// Who has waited too long goes first: the fairness that cells/deadlock.md asks of a cell.
+// Who has waited too long goes first: the fairness that cells/deadlock/deadlock.md asks of a cell.
 #include <algorithm>
 #include <tuple>
 

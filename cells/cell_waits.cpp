@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "cells/cell.hpp"
-#include "cells/wait_map.hpp"
+#include "cells/deadlock/wait_map.hpp"
 
 namespace raycell {
 namespace {

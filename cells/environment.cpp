@@ -4,8 +4,8 @@
 #include <cstring>
 #include <type_traits>
 
-#include "cells/link.hpp"
-#include "model/stall.hpp"
+#include "cells/channels/link.hpp"
+#include "model/machine/stall.hpp"
 
 namespace raycell {
 

@@ -4,13 +4,13 @@
 #include <array>
 
 #include "cells/array_share.hpp"
-#include "cells/ledger.hpp"
-#include "cells/message.hpp"
-#include "cells/observer.hpp"
-#include "cells/scheduler.hpp"
-#include "cells/time_out.hpp"
-#include "model/picture.hpp"
-#include "model/untimed.hpp"
+#include "cells/channels/message.hpp"
+#include "cells/channels/observer.hpp"
+#include "cells/clock/scheduler.hpp"
+#include "cells/meters/ledger.hpp"
+#include "cells/units/time_out.hpp"
+#include "model/machine/untimed.hpp"
+#include "model/picture/picture.hpp"
 
 namespace raycell {
 

@@ -1,6 +1,6 @@
 // What load messages wait for: the wait-for graph of a machine that loads. Messages only go down the
 // pipeline, so something always moves; the graph says what holds up the others.
-#include "cells/wait_map.hpp"
+#include "cells/deadlock/wait_map.hpp"
 #include "pipeline/machine.hpp"
 
 namespace raycell {

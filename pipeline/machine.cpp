@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "model/loading.hpp"
-#include "model/traffic.hpp"
+#include "model/loading/loading.hpp"
+#include "model/tracing/traffic.hpp"
 
 namespace raycell {
 namespace {

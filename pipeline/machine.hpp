@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "cells/array.hpp"
-#include "cells/wait_map.hpp"
-#include "model/array_file.hpp"
+#include "cells/deadlock/wait_map.hpp"
+#include "cells/hosts/array.hpp"
+#include "model/files/array_file.hpp"
 #include "pipeline/activity.hpp"
-#include "pipeline/distribution.hpp"
-#include "pipeline/exterior.hpp"
-#include "pipeline/geometry.hpp"
-#include "pipeline/precomputation.hpp"
-#include "pipeline/rank_exchange.hpp"
+#include "pipeline/ranks/rank_exchange.hpp"
+#include "pipeline/stages/distribution.hpp"
+#include "pipeline/stages/exterior.hpp"
+#include "pipeline/stages/geometry.hpp"
+#include "pipeline/stages/precomputation.hpp"
 
 namespace raycell {
 
@@ -28,7 +28,7 @@ enum class LoadedBy { run, saved, saved_other_timing };
 enum class Verdict { completed, deadlock, livelock, cycle_limit, capacity, interrupted };
 const char* name_of(Verdict verdict);
 
-/// What a time-out of `cycles` in every cell would have told (cells/time_out.hpp), beside the proof.
+/// What a time-out of `cycles` in every cell would have told (cells/units/time_out.hpp), beside the proof.
 struct TimeOutResult {
     Cycle cycles = 0;
     std::uint64_t false_alarms = 0;  ///< in cells of which nothing locked: they moved again
@@ -106,7 +106,7 @@ struct RunProgress {
 class Machine : public sc_core::sc_module {
   public:
     /// `tracer` may be null where nothing is handed to the exterior. With `traffic` what rays meet is drawn
-    /// (model/traffic.hpp). With `ranks` this is its rank's part of a machine that several processes
+    /// (model/tracing/traffic.hpp). With `ranks` this is its rank's part of a machine that several processes
     /// simulate; the scene's polygons and the tracer are needed by rank 0 alone. All arguments must outlive
     /// the machine.
     Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,

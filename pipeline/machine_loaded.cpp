@@ -5,7 +5,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "model/array_file.hpp"
+#include "model/files/array_file.hpp"
 #include "pipeline/machine.hpp"
 
 namespace raycell {

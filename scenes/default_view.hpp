@@ -1,7 +1,7 @@
 // A view for scenes whose format has none.
 #pragma once
 
-#include "model/scene.hpp"
+#include "model/geometry/scene.hpp"
 #include "scenes/diagnostics.hpp"
 
 namespace raycell {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "model/scene.hpp"
+#include "model/geometry/scene.hpp"
 #include "scenes/default_view.hpp"
 #include "scenes/diagnostics.hpp"
 #include "scenes/nff_reader.hpp"

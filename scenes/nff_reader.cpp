@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "model/shading.hpp"
+#include "model/shading/shading.hpp"
 #include "scenes/outline.hpp"
 #include "scenes/token_reader.hpp"
 

@@ -17,7 +17,7 @@
 #include <string>
 #include <string_view>
 
-#include "model/scene.hpp"
+#include "model/geometry/scene.hpp"
 #include "scenes/diagnostics.hpp"
 
 namespace raycell {

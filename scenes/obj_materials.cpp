@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/input_file.hpp"
+#include "model/files/input_file.hpp"
 #include "scenes/obj_lines.hpp"
 
 namespace raycell {

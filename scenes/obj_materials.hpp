@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "model/scene.hpp"
+#include "model/geometry/scene.hpp"
 #include "scenes/diagnostics.hpp"
 #include "scenes/outline.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/scene.hpp"
+#include "model/geometry/scene.hpp"
 #include "scenes/diagnostics.hpp"
 
 namespace raycell {

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "model/scene.hpp"
+#include "model/geometry/scene.hpp"
 
 namespace raycell {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "model/input_file.hpp"
+#include "model/files/input_file.hpp"
 
 namespace raycell {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "model/costs.hpp"
-#include "model/operators.hpp"
+#include "model/numbers/operators.hpp"
+#include "model/settings/costs.hpp"
 
 namespace {
 

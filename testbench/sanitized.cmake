@@ -7,9 +7,10 @@ if(NOT RAYCELL_SANITIZE)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endfunction()
 
-  raycell_library(raycell_sanitized ../model/*.cpp ../scenes/*.cpp)
-  target_include_directories(raycell_sanitized SYSTEM PUBLIC ${GLM_INCLUDE})
-  target_link_libraries(raycell_sanitized PRIVATE tinyobjloader::tinyobjloader_double)
+  file(GLOB model_sources CONFIGURE_DEPENDS ../model/*/*.cpp)
+  list(FILTER model_sources EXCLUDE REGEX "/truth/")
+  raycell_library(raycell_sanitized ${model_sources} ../scenes/*.cpp)
+  target_link_libraries(raycell_sanitized PUBLIC glm::glm PRIVATE tinyobjloader::tinyobjloader_double)
   raycell_sanitized(raycell_sanitized)
 
   foreach(room model scenes)

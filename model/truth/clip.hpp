@@ -1,7 +1,7 @@
 // The scene as the array can hold it: cut off at the cube.
 #pragma once
 
-#include "model/placement.hpp"
+#include "model/geometry/placement.hpp"
 
 namespace raycell {
 

@@ -2,7 +2,7 @@
 // section 3.3).
 #pragma once
 
-#include "model/tracing.hpp"
+#include "model/tracing/tracing.hpp"
 #include "model/truth/truth.hpp"
 
 namespace raycell {

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "model/placement.hpp"
-#include "model/settings.hpp"
+#include "model/geometry/placement.hpp"
+#include "model/settings/settings.hpp"
 #include "model/truth/truth.hpp"
 
 namespace raycell {

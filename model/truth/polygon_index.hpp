@@ -30,8 +30,8 @@ class PolygonIndex {
         std::size_t index = 0;  ///< into the polygons given
     };
 
-    /// The nearest polygon with nearest_hit < t <= t_max whose id is not `exclude`; within exact_tie of the nearest: the
-    /// lowest id.
+    /// The nearest polygon with nearest_hit < t <= t_max whose id is not `exclude`; within exact_tie of the
+    /// nearest: the lowest id.
     std::optional<Nearest> nearest(const ProbeRay& ray, std::uint32_t exclude, double t_max) const;
 
     /// Whether any polygon but `exclude` is met with nearest_hit < t <= t_max.

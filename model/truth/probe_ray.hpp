@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "model/polygon.hpp"
-#include "model/tolerance.hpp"
+#include "model/geometry/polygon.hpp"
+#include "model/numbers/tolerance.hpp"
 
 namespace raycell {
 
@@ -19,8 +19,8 @@ inline double outline_room(const Polygon& polygon) { return exact_hair + 2 * pol
 /// along the ray, as Woop, Benthin and Wald do for triangles (Watertight Ray/Triangle Intersection, 2013).
 /// An edge's crossing then depends on the ray and the edge's two ends alone, bit for bit, not on the polygon
 /// that asks: where polygons share an edge or a vertex, an odd number of those round the ray hold it, so no
-/// ray slips between them. A ray that passes an outline by no more than exact_hair meets it too, so that where
-/// edges lie on rays the choice is not left to rounding.
+/// ray slips between them. A ray that passes an outline by no more than exact_hair meets it too, so that
+/// where edges lie on rays the choice is not left to rounding.
 class ProbeRay {
   public:
     /// Cell coordinates; `direction` is unit (an error of a few 1e-5, as fixed-point words have, does no

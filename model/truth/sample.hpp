@@ -1,7 +1,7 @@
 // How far a picture is from the truth, by a sample of its pixels: for every run, at little cost.
 #pragma once
 
-#include "model/picture.hpp"
+#include "model/picture/picture.hpp"
 #include "model/truth/truth.hpp"
 
 namespace raycell {

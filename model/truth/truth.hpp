@@ -8,9 +8,9 @@
 #include <memory>
 #include <optional>
 
-#include "model/picture.hpp"
-#include "model/placement.hpp"
-#include "model/shading.hpp"
+#include "model/geometry/placement.hpp"
+#include "model/picture/picture.hpp"
+#include "model/shading/shading.hpp"
 #include "model/truth/polygon_index.hpp"
 
 namespace raycell {
@@ -19,8 +19,8 @@ namespace raycell {
 struct TruthSettings {
     int max_depth = 4;              ///< generations after the primary ray, >= 0
     double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut
-    /// SPD's rules 8 and 9: what transmits always sends one reflected ray, whatever its Ks, and on total internal
-    /// reflection no other.
+    /// SPD's rules 8 and 9: what transmits always sends one reflected ray, whatever its Ks, and on total
+    /// internal reflection no other.
     bool transmitters_reflect = false;
 };
 
@@ -33,8 +33,8 @@ struct TruthHit {
 
 /// Rays sent, in the terms of the Standard Procedural Databases (Haines 1987).
 struct TruthCounts {
-    std::uint64_t eye = 0;       ///< primary rays
-    std::uint64_t eye_hits = 0;  ///< of them, those that hit anything
+    std::uint64_t eye = 0;        ///< primary rays
+    std::uint64_t eye_hits = 0;   ///< of them, those that hit anything
     std::uint64_t reflected = 0;  ///< those of total internal reflection, too
     std::uint64_t refracted = 0;
     std::uint64_t shadow = 0;  ///< to sources that the normal faces; to others none is sent

@@ -85,7 +85,7 @@ def document(results, command, seconds):
     return f"""# Time-outs against the proof
 
 A counter in each cell runs while a message in it can't move on and nothing else of the cell moves; at T it gives alarm
-(`cells/time_out.hpp`). Beside it the proof: the knots of the wait-for graph. {len(results.rows)} runs of
+(`cells/units/time_out.hpp`). Beside it the proof: the knots of the wait-for graph. {len(results.rows)} runs of
 {results.cells}x{results.cells} cells, each a row of `time_outs.csv`, from which everything here and the chart are made.
 {cut_off}{minutes}Command: `{command}`.
 

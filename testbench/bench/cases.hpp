@@ -1,7 +1,7 @@
 // The cases. Those that use SystemC elaborate, so a process runs one of them.
 #pragma once
 
-#include "cells/array.hpp"
+#include "cells/hosts/array.hpp"
 #include "testbench/bench/traffic.hpp"
 
 namespace raycell::bench {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "cells/environment.hpp"
-#include "model/traffic.hpp"
+#include "model/tracing/traffic.hpp"
 
 namespace raycell::bench {
 

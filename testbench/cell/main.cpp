@@ -4,15 +4,15 @@
 #include <iostream>
 #include <systemc>
 
-#include "cells/probe.hpp"
-#include "model/input_file.hpp"
+#include "cells/probes/probe.hpp"
+#include "model/files/input_file.hpp"
 #include "testbench/cell/scenarios.hpp"
+#include "testbench/common/configuration.hpp"
+#include "testbench/common/entry.hpp"
+#include "testbench/common/new_file.hpp"
+#include "testbench/common/options.hpp"
 #include "testbench/golden/cell_bench.hpp"
 #include "testbench/raycell/commands.hpp"
-#include "testbench/raycell/configuration.hpp"
-#include "testbench/raycell/entry.hpp"
-#include "testbench/raycell/new_file.hpp"
-#include "testbench/raycell/options.hpp"
 
 namespace {
 

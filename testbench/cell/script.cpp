@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "model/trapeze.hpp"
+#include "model/loading/trapeze.hpp"
 
 namespace raycell {
 Script::Script(std::string name, std::string says) {

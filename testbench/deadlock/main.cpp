@@ -5,16 +5,16 @@
 #include <iostream>
 #include <systemc>
 
-#include "model/traffic.hpp"
+#include "model/tracing/traffic.hpp"
+#include "testbench/common/configuration.hpp"
+#include "testbench/common/entry.hpp"
+#include "testbench/common/interruptible.hpp"
+#include "testbench/common/knot_report.hpp"
+#include "testbench/common/machine_run.hpp"
+#include "testbench/common/new_file.hpp"
+#include "testbench/common/report_json.hpp"
+#include "testbench/common/scene_input.hpp"
 #include "testbench/raycell/commands.hpp"
-#include "testbench/raycell/configuration.hpp"
-#include "testbench/raycell/entry.hpp"
-#include "testbench/raycell/interruptible.hpp"
-#include "testbench/raycell/knot_report.hpp"
-#include "testbench/raycell/machine_run.hpp"
-#include "testbench/raycell/new_file.hpp"
-#include "testbench/raycell/report_json.hpp"
-#include "testbench/raycell/scene_input.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "model/loading.hpp"
+#include "model/loading/loading.hpp"
 #include "testbench/golden/messages.hpp"
 
 namespace raycell {

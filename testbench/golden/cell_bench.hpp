@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cells/cell_module.hpp"
+#include "cells/hosts/cell_module.hpp"
 #include "testbench/golden/file.hpp"
 
 namespace raycell {

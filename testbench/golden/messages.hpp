@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cells/message.hpp"
+#include "cells/channels/message.hpp"
 #include "testbench/golden/words.hpp"
 
 namespace raycell {

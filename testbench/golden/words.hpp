@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/arithmetic.hpp"
+#include "model/numbers/arithmetic.hpp"
 
 namespace raycell {
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "model/voxel.hpp"
+#include "model/loading/voxel.hpp"
 #include "testbench/loading/watch.hpp"
 
 namespace raycell::loading {

@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "model/message.hpp"
-#include "model/stall.hpp"
+#include "model/machine/message.hpp"
+#include "model/machine/stall.hpp"
 
 namespace raycell::loading {
 namespace {

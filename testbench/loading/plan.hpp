@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "cells/message.hpp"
-#include "model/loading.hpp"
+#include "cells/channels/message.hpp"
+#include "model/loading/loading.hpp"
 #include "testbench/loading/layout.hpp"
 
 namespace raycell::loading {

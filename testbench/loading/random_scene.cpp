@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "model/stall.hpp"
+#include "model/machine/stall.hpp"
 
 namespace raycell::loading {
 namespace {

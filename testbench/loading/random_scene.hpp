@@ -1,7 +1,7 @@
 // Polygons drawn instead of read, so that the pipeline can be studied apart from scenes.
 #pragma once
 
-#include "model/placement.hpp"
+#include "model/geometry/placement.hpp"
 
 namespace raycell::loading {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "model/message.hpp"
-#include "testbench/raycell/report_json.hpp"
+#include "model/machine/message.hpp"
+#include "testbench/common/report_json.hpp"
 
 namespace raycell::loading {
 namespace {

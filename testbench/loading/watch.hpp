@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "cells/scheduler.hpp"
+#include "cells/clock/scheduler.hpp"
 #include "testbench/loading/faults.hpp"
 #include "testbench/loading/plan.hpp"
 

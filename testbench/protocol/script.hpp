@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/message.hpp"
+#include "model/machine/message.hpp"
 
 namespace raycell::protocol {
 

@@ -2,12 +2,12 @@
 #include <cstdio>
 #include <iostream>
 
+#include "testbench/common/new_file.hpp"
+#include "testbench/common/options.hpp"
+#include "testbench/common/picture_file.hpp"
+#include "testbench/common/report_json.hpp"
+#include "testbench/common/scene_input.hpp"
 #include "testbench/raycell/commands.hpp"
-#include "testbench/raycell/new_file.hpp"
-#include "testbench/raycell/options.hpp"
-#include "testbench/raycell/picture_file.hpp"
-#include "testbench/raycell/report_json.hpp"
-#include "testbench/raycell/scene_input.hpp"
 
 namespace raycell {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "testbench/raycell/cell_ranges.hpp"
+#include "testbench/common/cell_ranges.hpp"
 
 namespace raycell {
 namespace {

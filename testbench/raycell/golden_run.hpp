@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "testbench/common/new_file.hpp"
+#include "testbench/common/options.hpp"
 #include "testbench/golden/recorder.hpp"
-#include "testbench/raycell/new_file.hpp"
-#include "testbench/raycell/options.hpp"
 
 namespace raycell {
 

@@ -4,10 +4,10 @@
 #include <systemc>
 
 #include "scenes/diagnostics.hpp"
+#include "testbench/common/configuration.hpp"
+#include "testbench/common/entry.hpp"
+#include "testbench/common/options.hpp"
 #include "testbench/raycell/commands.hpp"
-#include "testbench/raycell/configuration.hpp"
-#include "testbench/raycell/entry.hpp"
-#include "testbench/raycell/options.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // In place of mpi_transport.cpp in a program that is built without MPI.
-#include "testbench/raycell/entry.hpp"
+#include "testbench/common/entry.hpp"
 #include "testbench/raycell/mpi_transport.hpp"
 
 namespace raycell {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "pipeline/rank_exchange.hpp"
+#include "pipeline/ranks/rank_exchange.hpp"
 
 namespace raycell {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "testbench/raycell/entry.hpp"
+#include "testbench/common/entry.hpp"
 #include "testbench/raycell/mpi_transport.hpp"
 
 namespace raycell {

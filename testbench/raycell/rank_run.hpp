@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/machine.hpp"
-#include "testbench/raycell/options.hpp"
+#include "testbench/common/options.hpp"
 
 namespace raycell {
 

@@ -3,16 +3,16 @@
 #include <memory>
 #include <mutex>
 
+#include "model/machine/untimed.hpp"
 #include "model/truth/clip.hpp"
 #include "model/truth/exterior.hpp"
 #include "model/truth/truth.hpp"
-#include "model/untimed.hpp"
+#include "testbench/common/configuration.hpp"
+#include "testbench/common/machine_run.hpp"
+#include "testbench/common/new_file.hpp"
+#include "testbench/common/report_json.hpp"
+#include "testbench/common/scene_input.hpp"
 #include "testbench/raycell/commands.hpp"
-#include "testbench/raycell/configuration.hpp"
-#include "testbench/raycell/machine_run.hpp"
-#include "testbench/raycell/new_file.hpp"
-#include "testbench/raycell/report_json.hpp"
-#include "testbench/raycell/scene_input.hpp"
 #include "testbench/raycell/size_report.hpp"
 
 namespace raycell {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "testbench/raycell/options.hpp"
+#include "testbench/common/options.hpp"
 #include "testbench/raycell/size_search.hpp"
 
 namespace raycell {

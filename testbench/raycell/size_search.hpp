@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "model/compare.hpp"
-#include "model/settings.hpp"
-#include "model/voxel.hpp"
+#include "model/loading/voxel.hpp"
+#include "model/picture/compare.hpp"
+#include "model/settings/settings.hpp"
 
 namespace raycell {
 

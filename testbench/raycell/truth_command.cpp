@@ -4,12 +4,12 @@
 
 #include "model/truth/clip.hpp"
 #include "model/truth/truth.hpp"
+#include "testbench/common/configuration.hpp"
+#include "testbench/common/new_file.hpp"
+#include "testbench/common/picture_file.hpp"
+#include "testbench/common/report_json.hpp"
+#include "testbench/common/scene_input.hpp"
 #include "testbench/raycell/commands.hpp"
-#include "testbench/raycell/configuration.hpp"
-#include "testbench/raycell/new_file.hpp"
-#include "testbench/raycell/picture_file.hpp"
-#include "testbench/raycell/report_json.hpp"
-#include "testbench/raycell/scene_input.hpp"
 
 namespace raycell {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "model/untimed.hpp"
+#include "model/machine/untimed.hpp"
 
 namespace raycell::stability {
 

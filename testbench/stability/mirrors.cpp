@@ -1,7 +1,7 @@
 // Two facing mirrors: what errors grow to from generation to generation.
 #include <memory>
 
-#include "model/compare.hpp"
+#include "model/picture/compare.hpp"
 #include "model/truth/exterior.hpp"
 #include "scenes/load_scene.hpp"
 #include "testbench/stability/bench.hpp"

@@ -1,7 +1,7 @@
 // The viewer close to the screen: primary rays cross many cells, ever more obliquely.
 #include <cmath>
 
-#include "model/compare.hpp"
+#include "model/picture/compare.hpp"
 #include "model/truth/truth.hpp"
 #include "testbench/stability/bench.hpp"
 #include "testbench/stability/studies.hpp"

@@ -100,9 +100,8 @@ Report study_normals(const Effort& effort) {
             shoot(facet, numbers, at_zero_line, 100, random, outcome);
         }
         const bool exact = numbers.arithmetic == Numbers::exact;
-        report.table.add({stability::name_of(numbers),
-                          exact ? std::string("exact") : root_of(numbers), opening,
-                          outcome.angle.count(), at_zero_line ? "zero line" : "anywhere",
+        report.table.add({stability::name_of(numbers), exact ? std::string("exact") : root_of(numbers),
+                          opening, outcome.angle.count(), at_zero_line ? "zero line" : "anywhere",
                           outcome.length.largest(), outcome.angle.largest(), outcome.angle.mean(),
                           outcome.fell_back.percent(), outcome.not_numbers});
         not_numbers += outcome.not_numbers;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "model/placement.hpp"
+#include "model/geometry/placement.hpp"
 #include "property.hpp"
 
 namespace raycell::facing {

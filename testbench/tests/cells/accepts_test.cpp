@@ -1,6 +1,6 @@
 // The rule that the search over all orders uses for slots is the ray store's.
 #include "../property.hpp"
-#include "cells/ray_store.hpp"
+#include "cells/units/ray_store.hpp"
 #include "testbench/protocol/search.hpp"
 
 namespace raycell {

@@ -1,5 +1,5 @@
-// One small machine for each claim of cells/deadlock.md that a combination need not end, and beside it the
-// one that does.
+// One small machine for each claim of cells/deadlock/deadlock.md that a combination need not end, and beside
+// it the one that does.
 #include "../truth/hand_made.hpp"
 #include "elaboration.hpp"
 

@@ -1,7 +1,7 @@
 // Knots in machines that still run: what is locked in one cycle is locked for ever, whatever else moves.
 #include "elaboration.hpp"
 #include "knot_check.hpp"
-#include "model/traffic.hpp"
+#include "model/tracing/traffic.hpp"
 
 namespace raycell {
 namespace {

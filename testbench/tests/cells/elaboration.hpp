@@ -7,10 +7,10 @@
 #include <systemc>
 
 #include "../property.hpp"
-#include "cells/link.hpp"
+#include "cells/channels/link.hpp"
+#include "model/machine/untimed.hpp"
 #include "model/truth/exterior.hpp"
 #include "model/truth/truth.hpp"
-#include "model/untimed.hpp"
 #include "pipeline/machine.hpp"
 #include "scenes/load_scene.hpp"
 

@@ -1,6 +1,6 @@
 // Who runs the cells, modules or tiles, must not show in anything that a run tells (invariants 2 and 4).
 #include "elaboration.hpp"
-#include "model/traffic.hpp"
+#include "model/tracing/traffic.hpp"
 
 namespace raycell {
 namespace {

@@ -1,5 +1,5 @@
 // Waveforms: what a dump says is what happened, by a record that link and cell observers make.
-#include "cells/probe.hpp"
+#include "cells/probes/probe.hpp"
 
 #include <deque>
 #include <sstream>

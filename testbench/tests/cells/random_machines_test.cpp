@@ -1,5 +1,5 @@
 // At least 1000 random machines: each ends with a true verdict, loses no message, and where it completes it
-// has made the untimed picture, bit for bit. What cells/deadlock.md claims to end must end.
+// has made the untimed picture, bit for bit. What cells/deadlock/deadlock.md claims to end must end.
 #include "../truth/hand_made.hpp"
 #include "elaboration.hpp"
 #include "knot_check.hpp"
@@ -56,7 +56,7 @@ struct Drawn {
     PictureSettings settings;
     MachineSettings machine;
     std::unique_ptr<PlacedScene> placed;
-    int least = 1;  ///< the bound of cells/deadlock.md on M
+    int least = 1;  ///< the bound of cells/deadlock/deadlock.md on M
     std::string text;
 };
 
@@ -137,7 +137,7 @@ bool acyclic(const Drawn& drawn) {
     return n == Networks::half || n == Networks::quadrant || (n == Networks::split && line);
 }
 
-/// The theorems of cells/deadlock.md.
+/// The theorems of cells/deadlock/deadlock.md.
 bool must_end(const Drawn& drawn) {
     const MachineSettings& m = drawn.machine;
     const bool room_for_all = m.ray_store >= 10000;  // more than rays that ever wait in these arrays

@@ -6,8 +6,8 @@
 #include <systemc>
 
 #include "../property.hpp"
-#include "model/arithmetic.hpp"
-#include "model/fixed.hpp"
+#include "model/numbers/arithmetic.hpp"
+#include "model/numbers/fixed.hpp"
 
 namespace raycell {
 namespace {

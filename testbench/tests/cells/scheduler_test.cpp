@@ -2,7 +2,7 @@
 #include <map>
 #include <set>
 
-#include "cells/ray_store.hpp"
+#include "cells/units/ray_store.hpp"
 #include "elaboration.hpp"
 
 namespace raycell {

@@ -1,11 +1,11 @@
 // A link in halves against a whole one: nobody at either end can tell them apart.
-#include "cells/split_link.hpp"
+#include "cells/channels/split_link.hpp"
 
 #include <algorithm>
 #include <random>
 
 #include "elaboration.hpp"
-#include "pipeline/rank_exchange.hpp"
+#include "pipeline/ranks/rank_exchange.hpp"
 
 namespace raycell {
 namespace {

@@ -1,5 +1,5 @@
 // A cell alone under a stream of passing answers that never ends: whatever else wants the same output gets
-// its turn all the same. The argument in cells/deadlock.md stands on it.
+// its turn all the same. The argument in cells/deadlock/deadlock.md stands on it.
 #include "lone_cell.hpp"
 
 namespace raycell {

@@ -1,5 +1,5 @@
 // Time left: of a machine that runs, and in words.
-#include "testbench/raycell/time_estimate.hpp"
+#include "testbench/common/time_estimate.hpp"
 
 #include "elaboration.hpp"
 

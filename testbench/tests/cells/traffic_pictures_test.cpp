@@ -1,6 +1,6 @@
 // Synthetic traffic through the timed machine: the untimed picture, conserved messages, and a verdict.
 #include "elaboration.hpp"
-#include "model/traffic.hpp"
+#include "model/tracing/traffic.hpp"
 
 namespace raycell {
 namespace {

@@ -1,5 +1,5 @@
 // The analysis of wait-for graphs, against a search that knows only what the words mean.
-#include "cells/wait_graph.hpp"
+#include "cells/deadlock/wait_graph.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // What cells count about themselves: waiting by cause, to the cycle, however often a cell is woken.
-#include "cells/observer_list.hpp"
+#include "cells/meters/observer_list.hpp"
 #include "lone_cell.hpp"
-#include "testbench/raycell/ray_watch.hpp"
+#include "testbench/common/ray_watch.hpp"
 
 namespace raycell {
 namespace {

@@ -1,5 +1,5 @@
 // Words of fixed length: formats, sums of products and what is made of them, against integers.
-#include "model/arithmetic.hpp"
+#include "model/numbers/arithmetic.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Loaded arrays as files: every bit comes back, and damage is found.
-#include "model/array_file.hpp"
+#include "model/files/array_file.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -8,8 +8,8 @@
 
 #include "../property.hpp"
 #include "../truth/hand_made.hpp"
-#include "model/array_check.hpp"
-#include "model/loading.hpp"
+#include "model/files/array_check.hpp"
+#include "model/loading/loading.hpp"
 
 namespace raycell {
 namespace {

@@ -1,5 +1,5 @@
-// What a machine is told before it runs: the table of claims in cells/deadlock.md, row by row.
-#include "model/bound.hpp"
+// What a machine is told before it runs: the table of claims in cells/deadlock/deadlock.md, row by row.
+#include "model/machine/bound.hpp"
 
 #include <gtest/gtest.h>
 

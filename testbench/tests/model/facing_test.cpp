@@ -1,8 +1,8 @@
 // Property: what faces the viewer is seen, at every word length and every rung.
 #include "../facing_quad.hpp"
-#include "model/tessellate.hpp"
-#include "model/untimed.hpp"
-#include "model/visible_extent.hpp"
+#include "model/geometry/tessellate.hpp"
+#include "model/geometry/visible_extent.hpp"
+#include "model/machine/untimed.hpp"
 #include "shapes.hpp"
 
 namespace raycell {

@@ -1,7 +1,7 @@
 // Pictures in words: always numbers, always an end, and nearer to the exact one with every bit.
 #include <map>
 
-#include "model/untimed.hpp"
+#include "model/machine/untimed.hpp"
 #include "shapes.hpp"
 
 namespace raycell {

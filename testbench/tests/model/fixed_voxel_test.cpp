@@ -1,7 +1,7 @@
 // Planes, edges and normals in words: what is rounded together stays together, along a row and in a voxel.
-#include "model/intersect.hpp"
-#include "model/loading.hpp"
-#include "model/tracing.hpp"
+#include "model/loading/loading.hpp"
+#include "model/tracing/intersect.hpp"
+#include "model/tracing/tracing.hpp"
 #include "shapes.hpp"
 
 namespace raycell {

@@ -1,8 +1,7 @@
 // What words cost, by cause.
-#include "model/losses.hpp"
+#include "model/machine/losses.hpp"
 
-#include "model/loading.hpp"
-
+#include "model/loading/loading.hpp"
 #include "shapes.hpp"
 
 namespace raycell {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "model/operators.hpp"
+#include "model/numbers/operators.hpp"
 
 namespace raycell::operator_reference {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "model/loading.hpp"
-#include "model/tracing.hpp"
+#include "model/loading/loading.hpp"
+#include "model/tracing/tracing.hpp"
 #include "testbench/tests/property.hpp"
 
 namespace raycell {
@@ -53,7 +53,8 @@ TEST(Pieces, MoreThanAByteCountsInOneCellStillBoundThePolygon) {
             ray.fresh = false;
             set_direction(ray, {0, 0, 1}, context.arithmetic);
             const bool hit = visit_cell(cells[0], ray, context).event == Visit::Event::hit;
-            ASSERT_EQ(hit, inside(star, ray.position.x, ray.position.y)) << ray.position.x << ", " << ray.position.y;
+            ASSERT_EQ(hit, inside(star, ray.position.x, ray.position.y))
+                << ray.position.x << ", " << ray.position.y;
             hits += hit;
         }
         EXPECT_GT(hits, 1500);

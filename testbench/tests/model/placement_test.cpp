@@ -1,5 +1,5 @@
 // Where the cube stands in the scene, and the primary rays.
-#include "model/placement.hpp"
+#include "model/geometry/placement.hpp"
 
 #include "shapes.hpp"
 

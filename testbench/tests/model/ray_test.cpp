@@ -1,9 +1,9 @@
 // The walk from cell to cell, and what the messages of the links are made of.
-#include "model/ray.hpp"
+#include "model/tracing/ray.hpp"
 
 #include <set>
 
-#include "model/message.hpp"
+#include "model/machine/message.hpp"
 #include "shapes.hpp"
 #include "walker.hpp"
 

@@ -1,5 +1,5 @@
 // Whitted's model: directions and sums against formulas written another way.
-#include "model/shading.hpp"
+#include "model/shading/shading.hpp"
 
 #include "shapes.hpp"
 

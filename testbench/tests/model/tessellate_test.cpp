@@ -1,5 +1,5 @@
 // Curved objects into facets: closed, outward, as fine as asked.
-#include "model/tessellate.hpp"
+#include "model/geometry/tessellate.hpp"
 
 #include <map>
 

@@ -1,13 +1,13 @@
 // Synthetic traffic: draws that depend on the tree alone, with the probabilities that were asked for.
-#include "model/traffic.hpp"
+#include "model/tracing/traffic.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "../property.hpp"
-#include "model/storage_bits.hpp"
-#include "model/untimed.hpp"
+#include "model/machine/storage_bits.hpp"
+#include "model/machine/untimed.hpp"
 
 namespace raycell {
 namespace {

@@ -1,5 +1,5 @@
 // Trapezes tile the polygon that they were cut from.
-#include "model/trapeze.hpp"
+#include "model/loading/trapeze.hpp"
 
 #include "shapes.hpp"
 

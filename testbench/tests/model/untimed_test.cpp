@@ -1,5 +1,5 @@
 // The untimed machine on scenes made by hand.
-#include "model/untimed.hpp"
+#include "model/machine/untimed.hpp"
 
 #include "shapes.hpp"
 

@@ -1,8 +1,8 @@
 // Spans and voxels: every point of a polygon lies in the voxel of its cell.
-#include "model/voxel.hpp"
+#include "model/loading/voxel.hpp"
 
-#include "model/intersect.hpp"
-#include "model/loading.hpp"
+#include "model/loading/loading.hpp"
+#include "model/tracing/intersect.hpp"
 #include "shapes.hpp"
 
 namespace raycell {

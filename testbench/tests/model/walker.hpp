@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "model/loading.hpp"
-#include "model/tracing.hpp"
+#include "model/loading/loading.hpp"
+#include "model/tracing/tracing.hpp"
 
 namespace raycell::walker {
 

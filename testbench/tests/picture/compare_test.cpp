@@ -1,4 +1,4 @@
-#include "model/compare.hpp"
+#include "model/picture/compare.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Sets of files that are published together: all of them or none, and an earlier set whole until then.
-#include "testbench/raycell/new_file.hpp"
+#include "testbench/common/new_file.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "testbench/raycell/picture_file.hpp"
+#include "testbench/common/picture_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

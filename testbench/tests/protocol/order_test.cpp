@@ -1,5 +1,5 @@
 // Which buffer waits for which: over rays that walk as the model walks them, in the classes that the model
-// gives them. Without a ring in this graph plain forwarding can't lock (cells/deadlock.md, step 1).
+// gives them. Without a ring in this graph plain forwarding can't lock (cells/deadlock/deadlock.md, step 1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "../property.hpp"
-#include "model/message.hpp"
+#include "model/machine/message.hpp"
 
 namespace raycell {
 namespace {

@@ -1,5 +1,5 @@
-// Every interleaving of tiny arrays: what cells/deadlock.md claims to end does, whatever comes first; and for
-// what it does not claim there is a shortest way to the deadlock or the livelock.
+// Every interleaving of tiny arrays: what cells/deadlock/deadlock.md claims to end does, whatever comes
+// first; and for what it does not claim there is a shortest way to the deadlock or the livelock.
 #include "testbench/protocol/search.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "scenes/outline.hpp"
 
-#include "model/polygon.hpp"
+#include "model/geometry/polygon.hpp"
 #include "scene_checks.hpp"
 
 namespace raycell {

@@ -10,8 +10,8 @@
 #include <string>
 #include <variant>
 
-#include "model/scene.hpp"
-#include "model/shading.hpp"
+#include "model/geometry/scene.hpp"
+#include "model/shading/shading.hpp"
 #include "scenes/load_scene.hpp"
 
 namespace raycell {
@@ -35,7 +35,7 @@ inline void expect_sound(const ConePrimitive& cone) {
     ASSERT_GT(cone.base_radius + cone.apex_radius, 0);
 }
 
-/// Every promise of model/scene.hpp.
+/// Every promise of model/geometry/scene.hpp.
 inline void expect_sound(const Scene& scene) {
     ASSERT_TRUE(finite(scene.background));
     ASSERT_LE(scene.sources.size(), max_sources);

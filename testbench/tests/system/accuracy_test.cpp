@@ -4,7 +4,7 @@
 #include <map>
 
 #include "program.hpp"
-#include "testbench/raycell/picture_file.hpp"
+#include "testbench/common/picture_file.hpp"
 
 namespace raycell::system_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "program.hpp"
-#include "testbench/raycell/picture_file.hpp"
+#include "testbench/common/picture_file.hpp"
 
 namespace raycell::system_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "program.hpp"
-#include "testbench/raycell/picture_file.hpp"
+#include "testbench/common/picture_file.hpp"
 
 namespace raycell::system_test {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "model/compare.hpp"
+#include "model/machine/untimed.hpp"
+#include "model/picture/compare.hpp"
 #include "model/truth/exterior.hpp"
-#include "model/untimed.hpp"
 #include "scenes/load_scene.hpp"
 
 namespace raycell {

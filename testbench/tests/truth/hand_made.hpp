@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "model/placement.hpp"
+#include "model/geometry/placement.hpp"
 
 namespace raycell::hand_made {
 

@@ -1,0 +1,315 @@
+// A unidirectional FIFO channel between two cells: one set of wires, one buffer per class at the far end
+// (paper, section 4.3: "buffers shared by neighbouring cells").
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <systemc>
+
+#include "cells/channels/message.hpp"
+#include "cells/channels/observer.hpp"
+#include "cells/clock/scheduler.hpp"
+#include "cells/memory/fetch_line.hpp"
+
+namespace raycell {
+
+/// What the sending side sees, for the ports of modules.
+class LinkOut : virtual public sc_core::sc_interface {
+  public:
+    /// Whether a message of this class can start now: wires idle and room in its buffer, as they stood when
+    /// the cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is
+    /// woken in the cycle after room was made.
+    virtual bool can_send(int index, Cycle& retry) = 0;
+    /// Starts a message; it is visible at the far end after its link cycles. The receiver is woken `later`
+    /// cycles after that: for messages which it does nothing with before.
+    virtual void send(int index, const Message& message, int cycles, int later = 0) = 0;
+};
+
+/// What the receiving side sees, for the ports of modules.
+class LinkIn : virtual public sc_core::sc_interface {
+  public:
+    /// The oldest message of a class if it has arrived, else an empty one.
+    virtual Message front(int index) const = 0;
+    /// Cycle in which the oldest message arrived.
+    virtual Cycle arrival(int index) const = 0;
+    virtual void pop(int index) = 0;
+    /// Messages in a buffer, those still on the wires included.
+    virtual int occupancy(int index) const = 0;
+};
+
+/// The channel. Writes and reads of a cycle show in the next one, so the order in which cells run does not
+/// matter. Final, so that a cell's calls need no table; an array has four of them per cell, so what few links
+/// have is kept apart, and classes that a link never carries have no buffer. Laid out by cache lines, which
+/// are what a hop costs in a large array: what every hop needs in the first, then a line for each buffer.
+class alignas(64) Link final : public LinkOut, public LinkIn {
+  public:
+    struct ClassStatistics {
+        std::uint64_t sent = 0;
+        std::uint64_t delivered = 0;
+        std::uint64_t occupied_cycles = 0;  ///< sum over messages of the cycles that they took up a place
+        int peak = 0;
+    };
+    static constexpr int most_classes = 5;
+    static constexpr int most_depth = 65535;
+    static constexpr std::uint32_t all_classes = ~std::uint32_t(0);
+
+    /// `used`: a bit for each of the classes that the link carries.
+    Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used = all_classes);
+
+    void connect_source(Client& source) { source_ = &source; }
+    void connect_sink(Client& sink) { sink_ = &sink; }
+    /// For sinks with many links: called with `port` and the cycle in which a message of a class will be
+    /// visible.
+    struct Arrivals {
+        virtual ~Arrivals() = default;
+        virtual void arrives(std::uint32_t port, int index, Cycle visible) = 0;
+    };
+    void report_arrivals(Arrivals& arrivals, std::uint32_t port);
+    /// Random stalls on the wires (MachineSettings::stall); `who` tells links apart.
+    void set_stall(double probability, std::uint64_t seed, std::uint64_t who);
+    /// Null: nobody watches.
+    void set_observer(LinkObserver* observer);
+    /// For reports; those between the cells of an array have none.
+    void set_name(std::string name);
+    std::string name() const { return extras_ ? extras_->name : std::string(); }
+
+    bool can_send(int index, Cycle& retry) override;
+    /// What can_send() would say, without asking to be woken: for whoever watches.
+    enum class Room : std::uint8_t { free, wires_busy, full };
+    Room room(int index) const;
+    void send(int index, const Message& message, int cycles, int later = 0) override;
+    Message front(int index) const override {
+        const Buffer* buffer = find(index);
+        if (!buffer || buffer->count == 0) return {};
+        const Entry& entry = buffer->at(0);
+        return entry.visible <= scheduler_.now() ? entry.message : Message();
+    }
+    Cycle arrival(int index) const override {
+        const Buffer* buffer = find(index);
+        return buffer && buffer->count > 0 ? buffer->at(0).visible : never;
+    }
+    void pop(int index) override;
+
+    /// For a sink that knows where a class's buffer stands, and need not touch the link's first line
+    /// for it. Only for classes that the link carries.
+    std::uint8_t place(int index) const { return places_[std::size_t(index)]; }
+    const Message* head_at(std::uint8_t place, Cycle now) const {
+        const Buffer& b = buffer_at(place);
+        if (b.count == 0) return nullptr;
+        const Entry& entry = b.at(0);
+        return entry.visible <= now ? &entry.message : nullptr;
+    }
+    /// Of a buffer that is not empty.
+    Cycle arrival_at(std::uint8_t place) const { return buffer_at(place).at(0).visible; }
+    /// Cycle from which on the oldest message has been both arrived and the oldest.
+    Cycle head_since_at(std::uint8_t place) const {
+        const Buffer& b = buffer_at(place);
+        return b.last_pop == never ? b.at(0).visible : std::max(b.at(0).visible, b.last_pop);
+    }
+    int occupancy_at(std::uint8_t place) const { return buffer_at(place).count; }
+    bool sender_waits_at(std::uint8_t place) const { return buffer_at(place).sender_waits; }
+    /// Returns what the sink is to take from its pending_: bits if the buffer is empty now.
+    std::uint32_t pop_at(std::uint8_t place, Cycle now);
+    /// Asks the link to keep `bits`, of 0 to 15, set in its sink's pending_ while the buffer of a class holds
+    /// anything, on the wires or arrived: so a cell need not look into empty buffers. Throws std::logic_error
+    /// without a sink.
+    void watch(int index, std::uint32_t bits);
+    /// Asks the link to set `bits`, of 0 to 15, in its source's room_made_ when a sender that can_send() has
+    /// refused for want of room is woken: until then it need not ask again.
+    void tell_room(std::uint32_t bits) { room_bits_ = std::uint8_t(bits & 15U); }
+    /// Whether a sender was refused for want of room and none has been made since.
+    bool sender_waits(int index) const { return buffer(index).sender_waits; }
+    int occupancy(int index) const override {
+        const Buffer* buffer = find(index);
+        return buffer ? buffer->count : 0;
+    }
+    /// Whether the buffer of a class has no room left; for looking at a machine, not for sending.
+    bool full(int index) const { return occupancy(index) >= depth_; }
+    /// What stands in a buffer, oldest first, for looking at a machine; `place` below occupancy().
+    struct Held {
+        Message message;
+        Cycle visible = 0;  ///< when it arrived, or will
+    };
+    Held held(int index, int place) const;
+    /// Cycle of the last pop of a class, `never` before the first.
+    Cycle last_pop(int index) const;
+
+    int classes() const { return classes_; }
+    int depth() const { return depth_; }
+    /// Since the last reset; what still stands in a buffer counts up to now.
+    ClassStatistics statistics(int index) const;
+    /// Begins a phase: counts anew.
+    void reset_statistics();
+    std::uint64_t busy_cycles() const;
+
+    /// Bytes of an unwatched link with empty buffers.
+    static std::size_t bytes(std::uint32_t used);
+
+    /// Asks for the memory of a hop ahead: the link's first line and that of its `place`th buffer, which it
+    /// takes on trust rather than read.
+    void fetch(std::size_t place) const {
+        fetch_line(this);
+        fetch_buffer(place);
+    }
+    /// The buffer's alone: all that a sink touches of a link.
+    void fetch_buffer(std::size_t place) const {
+        if (place < own_buffers) fetch_line(&buffers_[place]);
+    }
+    /// And what it takes to wake the source.
+    void fetch_source() const { fetch_line(this); }
+    /// The place of a class's buffer in a link that carries the classes `used`.
+    static constexpr std::uint8_t place_of(int index, std::uint32_t used) {
+        return std::uint8_t(__builtin_popcount(used & ((1U << unsigned(index)) - 1)));
+    }
+
+  private:
+    using Entry = Held;
+    struct alignas(64) Buffer {
+        union {
+            Entry first;  ///< all there is at depth 1
+            Entry* ring;  ///< of `capacity`, once more than one has been needed
+        };
+        Cycle last_pop = never;
+        std::uint64_t occupied = 0;  ///< cycles of pops less cycles of sends: needs no note of when
+        std::uint32_t sent = 0;
+        std::uint32_t busy = 0;  ///< cycles that its messages took on the wires
+        std::uint16_t pending_bits = 0;
+        std::uint16_t capacity = 1;
+        std::uint16_t head = 0;
+        std::uint16_t count = 0;
+        std::uint16_t popped_now = 0;  ///< in cycle last_pop: not yet room for the sender
+        std::uint16_t peak = 0;
+        bool sender_waits = false;
+        bool watched = false;  ///< the link has extras that are told of every pop
+
+        Buffer() : first() {}
+        ~Buffer() {
+            if (capacity > 1) delete[] ring;
+        }
+        Buffer(const Buffer&) = delete;
+        Buffer& operator=(const Buffer&) = delete;
+        Entry& at(std::uint32_t place) { return capacity > 1 ? ring[wrapped(place)] : first; }
+        const Entry& at(std::uint32_t place) const { return capacity > 1 ? ring[wrapped(place)] : first; }
+        std::uint32_t wrapped(std::uint32_t place) const {
+            const std::uint32_t sum = head + place;
+            return sum < capacity ? sum : sum - capacity;
+        }
+        std::uint32_t still_seen(Cycle now) const { return last_pop == now ? popped_now : 0; }
+        void grow(int depth);
+    };
+    /// What only links have that are watched, stalled or at the border.
+    struct Extras {
+        Arrivals* arrivals = nullptr;
+        LinkObserver* observer = nullptr;
+        std::uint32_t port = 0;
+        double stall = 0;
+        std::uint64_t stall_seed = 0;
+        std::uint64_t stall_who = 0;
+        std::uint64_t sends = 0;
+        std::string name;
+        std::unique_ptr<Buffer[]> more_buffers;  ///< beyond the link's own
+    };
+
+    static constexpr std::uint8_t no_buffer = 255;
+    const Buffer* find(int index) const {
+        const std::uint8_t place = places_[std::size_t(index)];
+        return place == no_buffer ? nullptr : &buffer_at(place);
+    }
+    Buffer& buffer_at(std::uint8_t place) {
+        return place < own_buffers ? buffers_[place] : extras_->more_buffers[place - own_buffers];
+    }
+    const Buffer& buffer_at(std::uint8_t place) const { return const_cast<Link*>(this)->buffer_at(place); }
+    Buffer& buffer(int index) { return buffer_at(places_[std::size_t(index)]); }
+    const Buffer& buffer(int index) const { return buffer_at(places_[std::size_t(index)]); }
+    Extras& extras();
+    std::uint32_t stalled();
+    void tell_sent(int index, const Message& message, int cycles);
+    void tell_popped(std::uint8_t place);
+    void wake_source(Cycle now);
+
+    Scheduler& scheduler_;
+    Cycle wires_free_ = 0;
+    std::uint16_t depth_;
+    std::uint8_t classes_ : 4;
+    std::uint8_t room_bits_ : 4;                     ///< of the source's room_made_
+    std::array<std::uint8_t, most_classes> places_;  ///< of the classes' buffers
+    Client* sink_ = nullptr;
+    Client* source_ = nullptr;
+    std::unique_ptr<Extras> extras_;
+    static constexpr std::size_t own_buffers = 3;  ///< all that a link between cells has
+    std::array<Buffer, own_buffers> buffers_;
+};
+
+// What a cell does with its links in every hop.
+
+inline bool Link::can_send(int index, Cycle& retry) {
+    Buffer& b = buffer(index);
+    const Cycle now = scheduler_.now();
+    const std::uint32_t still_seen = b.still_seen(now);
+    if (b.count + still_seen >= depth_) {
+        if (still_seen > 0) {
+            retry = std::min(retry, now + 1);
+        } else {
+            b.sender_waits = true;
+        }
+        return false;
+    }
+    if (wires_free_ > now) {
+        retry = std::min(retry, wires_free_);
+        return false;
+    }
+    return true;
+}
+
+inline void Link::send(int index, const Message& message, int cycles, int later) {
+    Buffer& b = buffer(index);
+    const Cycle now = scheduler_.now();
+    if (b.count == b.capacity) b.grow(depth_);
+    if (extras_) cycles += int(stalled());
+    wires_free_ = now + Cycle(cycles);
+    b.at(b.count) = {message, wires_free_};
+    ++b.count;
+    if (sink_) sink_->pending_ |= b.pending_bits;
+    ++b.sent;
+    b.occupied -= now;
+    // A place read in this cycle still counts: the peak must not depend on which end ran first.
+    b.peak = std::max(b.peak, std::uint16_t(b.count + b.still_seen(now)));
+    b.busy += std::uint32_t(cycles);
+    if (extras_) tell_sent(index, message, cycles);
+    if (!sink_) return;
+    scheduler_.wake(*sink_, wires_free_ + Cycle(later));
+    if (later > 0) scheduler_.sample_at(wires_free_, wires_free_ + Cycle(later));
+}
+
+inline std::uint32_t Link::pop_at(std::uint8_t place, Cycle now) {
+    Buffer& b = buffer_at(place);
+    if (b.watched) tell_popped(place);
+    b.occupied += now;
+    b.head = std::uint16_t(b.wrapped(1));
+    --b.count;
+    if (b.last_pop != now) {
+        b.last_pop = now;
+        b.popped_now = 0;
+    }
+    ++b.popped_now;
+    if (b.sender_waits) {
+        b.sender_waits = false;
+        wake_source(now);
+    }
+    return b.count == 0 ? b.pending_bits : 0;
+}
+
+inline void Link::wake_source(Cycle now) {
+    if (!source_) return;
+    source_->room_made_ |= room_bits_;
+    scheduler_.wake(*source_, now + 1);
+}
+
+inline void Link::pop(int index) {
+    const std::uint32_t emptied = pop_at(place(index), scheduler_.now());
+    if (sink_) sink_->pending_ &= ~emptied;
+}
+
+}  // namespace raycell

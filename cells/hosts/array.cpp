@@ -1,0 +1,211 @@
+#include "cells/hosts/array.hpp"
+
+#include <algorithm>
+
+#include "cells/channels/split_link.hpp"
+
+namespace raycell {
+
+bool Granularity::is_module(int x, int y) const {
+    return every_cell || std::any_of(detail.begin(), detail.end(),
+                                     [&](const CellRange& range) { return range.contains(x, y); });
+}
+
+std::size_t Granularity::modules(int width, int height) const {
+    if (every_cell) return std::size_t(width) * std::size_t(height);
+    if (detail.empty()) return 0;
+    std::size_t sum = 0;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) sum += is_module(x, y);
+    }
+    return sum;
+}
+
+Array::Array(sc_core::sc_module_name name, Environment& environment, const Granularity& granularity)
+    : sc_module(name), environment_(environment) {
+    const int width = environment.width();
+    const ArrayShare& share = environment.share;
+    cells_.reserve(std::size_t(width) * share.rows().size());
+    for (const int y : share.rows()) {
+        for (int x = 0; x < width; ++x) cells_.emplace_back(environment, x, y);
+    }
+    const auto column = std::ptrdiff_t(sizeof(Cell));
+    environment.neighbours = {column, column * width, -column, -column * width};
+    make_hosts(granularity);
+    make_links();
+}
+
+void Array::make_hosts(const Granularity& granularity) {
+    const auto name_at = [](const char* what, int x, int y) {
+        return what + ("_" + std::to_string(x)) + "_" + std::to_string(y);
+    };
+    const int tile_side = granularity.tile_side;
+    const int columns = (environment_.width() + tile_side - 1) / tile_side;
+    const int rows = (int(environment_.share.rows().size()) + tile_side - 1) / tile_side;
+    for (int i = 0; !granularity.every_cell && i < columns * rows; ++i) {
+        tiles_.push_back(
+            std::make_unique<CellTile>(name_at("tile", i % columns, i / columns).c_str(), environment_));
+    }
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        Cell& cell = cells_[i];
+        if (granularity.is_module(cell.x(), cell.y())) {
+            modules_[i] =
+                std::make_unique<CellModule>(name_at("cell", cell.x(), cell.y()).c_str(), environment_, cell);
+        } else {
+            const int row = environment_.share.place(cell.y()) / tile_side;
+            cell.set_host(*tiles_[std::size_t(row * columns + cell.x() / tile_side)]);
+        }
+    }
+}
+
+void Array::make_links() {
+    const ArrayShare& share = environment_.share;
+    links_.reserve(cells_.size() * side_count);
+    ways_.reserve(cells_.size() * side_count);
+    for (const int y : share.rows()) {
+        for (int x = 0; x < environment_.width(); ++x) {
+            for (int side = 0; side < side_count; ++side) make_link(x, y, Side(side));
+        }
+    }
+    for (const Band& band : share.bands()) {
+        if (band.above) make_half_links(*band.above, band.first, Side::north);
+        if (band.below) make_half_links(*band.below, band.end - 1, Side::south);
+    }
+}
+
+void Array::make_link(int x, int y, Side side) {
+    const int to_x = x + step_x(side);
+    const int to_y = y + step_y(side);
+    if (to_x < 0 || to_x >= environment_.width() || !environment_.share.contains(to_y)) return;
+    Link& link = add_link(to_x, to_y, side);
+    stall(link, x, y, side);
+    link.connect_source(cell(x, y));
+    link.connect_sink(cell(to_x, to_y));
+    bind_out(x, y, side, link);
+    bind_in(to_x, to_y, opposite(side), link);
+}
+
+/// A link into cell (to_x, to_y); `side` is its source's.
+Link& Array::add_link(int to_x, int to_y, Side side) {
+    Link& link = links_.emplace_back(environment_.scheduler, environment_.classes.count,
+                                     environment_.machine.buffer_depth, environment_.classes.used_over(side));
+    ways_.push_back(std::uint32_t(index(to_x, to_y)) * side_count + std::uint32_t(side));
+    return link;
+}
+
+void Array::stall(Link& link, int x, int y, Side side) const {
+    if (!(environment_.machine.stall > 0)) return;
+    environment_.stall(link, "cell_" + std::to_string(x) + "_" + std::to_string(y) + "." + name_of(side));
+}
+
+/// Row y and its neighbour `outwards`, another rank's: of each column the link to the south, then that to the
+/// north, on both sides of the cut.
+void Array::make_half_links(SplitLinks& split, int y, Side outwards) {
+    for (int x = 0; x < environment_.width(); ++x) {
+        if (outwards == Side::south) {
+            make_half_link_out(split, x, y, outwards);
+            make_half_link_in(split, x, y, outwards);
+        } else {
+            make_half_link_in(split, x, y, outwards);
+            make_half_link_out(split, x, y, outwards);
+        }
+    }
+}
+
+void Array::make_half_link_out(SplitLinks& split, int x, int y, Side side) {
+    Link& link = split.make_source(environment_.scheduler, environment_.classes.count,
+                                   environment_.machine.buffer_depth, environment_.classes.used_over(side));
+    stall(link, x, y, side);
+    link.connect_source(cell(x, y));
+    bind_out(x, y, side, link);
+}
+
+void Array::make_half_link_in(SplitLinks& split, int x, int y, Side from) {
+    Link& link = add_link(x, y, opposite(from));
+    split.add_sink(link);
+    link.connect_sink(cell(x, y));
+    bind_in(x, y, from, link);
+}
+
+CellModule* Array::module(int x, int y) {
+    if (modules_.empty()) return nullptr;
+    const auto found = modules_.find(index(x, y));
+    return found == modules_.end() ? nullptr : found->second.get();
+}
+
+void Array::bind_in(int x, int y, Side side, Link& link) {
+    if (CellModule* host = module(x, y)) {
+        host->in[std::size_t(side)].bind(link);
+    } else {
+        cell(x, y).connect_in(side, link);
+    }
+}
+
+void Array::bind_out(int x, int y, Side side, Link& link) {
+    if (CellModule* host = module(x, y)) {
+        host->out[std::size_t(side)].bind(link);
+    } else {
+        cell(x, y).connect_out(side, link);
+    }
+}
+
+void Array::join_border(int x, int y, Side side, Link& from_outside, Link& to_outside) {
+    bind_in(x, y, side, from_outside);
+    bind_out(x, y, side, to_outside);
+}
+
+void Array::join_row(int y, Link& load) {
+    load.connect_sink(cell(0, y));
+    if (CellModule* host = module(0, y)) {
+        host->load_in.bind(load);
+    } else {
+        cell(0, y).connect_load(load);
+    }
+}
+
+/// A module's ports know their links only when elaboration ends, so it sees to its cell itself.
+void Array::end_of_elaboration() {
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        if (modules_.count(i) == 0) cells_[i].elaborate();
+    }
+}
+
+/// Once loading is over: the depths of all cells' voxels side by side.
+void Array::make_runs() {
+    std::size_t count = 0;
+    for (const Cell& cell : cells_) count += cell.store().voxels.size();
+    if (count == 0 || runs_.size() > 0) return;
+    runs_.reserve(count);
+    for (Cell& cell : cells_) {
+        const DepthRun* first = runs_.begin() + runs_.size();
+        for (const Voxel& voxel : cell.store().voxels) runs_.emplace_back(DepthRun{voxel.near, voxel.far});
+        cell.set_runs(first);
+    }
+}
+
+void Array::begin_phase() {
+    if (environment_.phase != Phase::load) make_runs();
+    const Cycle next = environment_.scheduler.now() + 1;
+    for (Cell& cell : cells_) {
+        cell.begin_phase();
+        environment_.scheduler.wake(cell, next);
+    }
+}
+
+std::uint64_t Array::schedule_hash() const {
+    ScheduleHash hash;
+    for (const Cell& cell : cells_) hash.add(cell.schedule_hash());
+    return hash.value();
+}
+
+double Array::bytes(const Granularity& granularity, int width, int height, const BufferClasses& classes) {
+    // Links over the border, which a tile's array may not have, are counted.
+    double each = sizeof(Cell);
+    for (int side = 0; side < side_count; ++side) {
+        each += Link::bytes(classes.used_over(Side(side))) + sizeof(std::uint32_t);
+    }
+    constexpr double module = 8.3e3;  // measured: ports, process and event of SystemC's
+    return each * width * height + module * double(granularity.modules(width, height));
+}
+
+}  // namespace raycell

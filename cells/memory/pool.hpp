@@ -1,0 +1,42 @@
+// Reuses objects: no allocation per message once a run is warm.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "cells/memory/stable_array.hpp"
+
+namespace raycell {
+
+/// Hands out objects that stay where they are. Not for several threads.
+template <typename T>
+class Pool {
+  public:
+    T* take() {
+        if (free_.empty()) return make();
+        T* object = free_.back();
+        free_.pop_back();
+        *object = T();
+        return object;
+    }
+    void give_back(T* object) { free_.push_back(object); }
+    std::size_t in_use() const { return made_ - free_.size(); }
+
+  private:
+    static constexpr std::size_t block = StableArray<T>::page / sizeof(T);  // objects
+    T* make() {
+        if (made_ % block == 0) {
+            blocks_.push_back(std::make_unique<StableArray<T>>());
+            blocks_.back()->reserve(block);
+        }
+        ++made_;
+        return &blocks_.back()->emplace_back();
+    }
+
+    std::vector<std::unique_ptr<StableArray<T>>> blocks_;
+    std::size_t made_ = 0;
+    std::vector<T*> free_;
+};
+
+}  // namespace raycell

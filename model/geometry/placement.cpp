@@ -1,0 +1,127 @@
+#include "model/geometry/placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "model/geometry/tessellate.hpp"
+#include "model/geometry/visible_extent.hpp"
+
+namespace raycell {
+
+dvec3 Frame::direction_to_cells(const dvec3& world) const {
+    return {glm::dot(world, right), glm::dot(world, down), glm::dot(world, forward)};
+}
+
+dvec3 Frame::to_cells(const dvec3& world) const { return direction_to_cells(world - corner) / cell_width; }
+
+Frame::PrimaryRay Frame::primary_ray(double x, double y) const {
+    const dvec3 origin{x, y, 0};
+    if (viewer_at_infinity) return {origin, {0, 0, 1}};
+    return {origin, glm::normalize(origin - eye)};
+}
+
+namespace {
+
+/// Room between the visible scene and the cube's front and back, cells: what faces the viewer must not lie on
+/// a face, where words can't tell inside from outside. It also covers what facets lie inside of a curved
+/// surface.
+double margin_of(const PictureSettings& settings) { return std::max(0.5, 2 * settings.chord_error); }
+
+/// What the array takes in, in the viewer's coordinates: `tan_x`, `tan_y` are its half sides at distance 1.
+std::vector<HalfSpace> field_of_view(ViewerMode viewer, double tan_x, double tan_y, double hither,
+                                     double to_target) {
+    if (viewer == ViewerMode::infinity) {
+        const double x = -tan_x * to_target;
+        const double y = -tan_y * to_target;
+        return {{{1, 0, 0}, x}, {{-1, 0, 0}, x}, {{0, 1, 0}, y}, {{0, -1, 0}, y}};
+    }
+    return {{{0, 0, 1}, hither},
+            {{1, 0, tan_x}, 0},
+            {{-1, 0, tan_x}, 0},
+            {{0, 1, tan_y}, 0},
+            {{0, -1, tan_y}, 0}};
+}
+
+}  // namespace
+
+Frame place_frame(const Scene& scene, const PictureSettings& settings) {
+    if (!scene.view) throw std::invalid_argument("the scene has no view");
+    const View& view = *scene.view;
+    Frame frame;
+    frame.width = settings.width;
+    frame.height = settings.height;
+    frame.depth_levels = settings.depth_levels;
+    frame.forward = glm::normalize(view.at - view.from);
+    frame.right = glm::normalize(glm::cross(frame.forward, view.up));
+    frame.down = glm::cross(frame.forward, frame.right);
+    frame.viewer_at_infinity = settings.viewer == ViewerMode::infinity;
+
+    // NFF's angle runs from the centre of the first to the centre of the last pixel row.
+    const double intervals = std::max(settings.height - 1, 1);
+    const double tan_half = std::tan(glm::radians(view.angle) / 2);
+    const double tan_cell = 2 * tan_half / intervals;  // a cell's width over its distance
+    const double to_target = glm::length(view.at - view.from);
+
+    const double hither = std::max(view.hither, 1e-6 * to_target);
+    const std::vector<HalfSpace> field = field_of_view(settings.viewer, settings.width * tan_cell / 2,
+                                                       settings.height * tan_cell / 2, hither, to_target);
+    const ViewAxes axes{view.from, frame.right, frame.down, frame.forward};
+    Extent extent;
+    for (const Primitive& primitive : scene.primitives) extent.add(visible_extent(primitive, axes, field));
+    if (!(extent.near <= extent.far)) extent = {to_target, to_target};  // nothing to see: background
+
+    const double margin = margin_of(settings);
+    double near = extent.near - margin * tan_cell * to_target;
+    // The nearer the screen, the smaller its cells. Nothing before `hither` is to be seen: a scene that is
+    // cut off there passes through the screen.
+    if (!frame.viewer_at_infinity) near = std::max(extent.near / (1 + margin * tan_cell), 0.999 * hither);
+    const double distance = frame.viewer_at_infinity ? to_target : near;
+    frame.cell_width = tan_cell * distance;
+    const double far = extent.far + margin * frame.cell_width;
+    frame.depth = std::max((far - near) / frame.cell_width, 1.0);
+    frame.corner = view.from + near * frame.forward -
+                   0.5 * frame.cell_width *
+                       (double(settings.width) * frame.right + double(settings.height) * frame.down);
+    frame.eye = {0.5 * settings.width, 0.5 * settings.height, -near / frame.cell_width};
+    return frame;
+}
+
+CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings) {
+    if (scene.sources.size() > max_sources) {
+        throw std::invalid_argument("the scene has " + std::to_string(scene.sources.size()) +
+                                    " light sources; at most " + std::to_string(max_sources) +
+                                    " are allowed");
+    }
+    CellScene placed;
+    placed.frame = frame;
+    placed.background = scene.background;
+    placed.objects = scene.materials;
+    const double share = 1 / std::sqrt(double(std::max<std::size_t>(scene.sources.size(), 1)));
+    for (const LightSource& source : scene.sources) {
+        placed.sources.push_back({frame.to_cells(source.position), source.colour.value_or(dvec3(share))});
+    }
+    for (const Primitive& primitive : scene.primitives) {
+        auto polygons = tessellate(primitive, std::uint32_t(placed.polygons.size()), frame,
+                                   settings.chord_error, &placed.warnings);
+        std::move(polygons.begin(), polygons.end(), std::back_inserter(placed.polygons));
+    }
+    const Box cube = frame.cube();
+    constexpr double hair = 1e-6;  // cells: what touches a face does not lie beyond it
+    bool any_inside = false;
+    for (const Polygon& polygon : placed.polygons) {
+        any_inside = any_inside || !clip_to_box(polygon.vertices, cube).empty();
+        for (const dvec3& p : polygon.vertices) {
+            for (int axis = 0; axis < 3; ++axis) {
+                if (p[axis] < cube.low[axis] - hair) placed.beyond[std::size_t(2 * axis)] = true;
+                if (p[axis] > cube.high[axis] + hair) placed.beyond[std::size_t(2 * axis + 1)] = true;
+            }
+        }
+    }
+    if (!any_inside && !placed.polygons.empty()) {
+        placed.warnings.push_back("nothing of the scene lies in the cube that the viewer sees");
+    }
+    return placed;
+}
+
+}  // namespace raycell

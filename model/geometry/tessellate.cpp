@@ -1,0 +1,153 @@
+#include "model/geometry/tessellate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycell {
+
+int sphere_subdivision(double radius, double chord_error) {
+    // The facet at an octant's centre is the largest: its plane lies at r / sqrt(1 + 2/n²).
+    const double ratio = 1 - chord_error / radius;
+    if (!(ratio > 0.58)) return 1;
+    const double n = std::sqrt(2 / (1 / (ratio * ratio) - 1));
+    return int(std::clamp(std::ceil(n), 1.0, double(max_sphere_subdivision)));
+}
+
+int cone_facets(double radius, double chord_error) {
+    const double ratio = 1 - chord_error / radius;
+    if (!(ratio > 0.5)) return 4;
+    const double n = std::acos(-1.0) / std::acos(ratio);
+    return int(std::clamp(std::ceil(n), 4.0, double(max_cone_facets)));
+}
+
+namespace {
+
+class Builder {
+  public:
+    Builder(const Primitive& primitive, std::uint32_t first_id, const Frame& frame)
+        : frame_(frame), object_(primitive.material), next_id_(first_id) {}
+
+    void polygon(const PolygonPrimitive& shape) {
+        std::vector<dvec3> outline;
+        outline.reserve(shape.vertices.size());
+        for (const dvec3& v : shape.vertices) outline.push_back(frame_.to_cells(v));
+        if (!has_area(outline)) return;
+        if (shape.normals.empty()) {
+            polygons.push_back(make_polygon(next_id_++, object_, std::move(outline)));
+            return;
+        }
+        // Only over a triangle is "linear between the vertices" one function.
+        for (const auto& t : triangulate(outline, newell(outline))) {
+            triangle({outline[t[0]], outline[t[1]], outline[t[2]]},
+                     {to_frame(shape.normals[t[0]]), to_frame(shape.normals[t[1]]),
+                      to_frame(shape.normals[t[2]])});
+        }
+    }
+
+    void sphere(const SpherePrimitive& shape, double chord_error, std::vector<std::string>* warnings) {
+        const dvec3 centre = frame_.to_cells(shape.centre);
+        const double radius = shape.radius / frame_.cell_width;
+        const int n = sphere_subdivision(radius, chord_error);
+        if (n == max_sphere_subdivision && warnings) {
+            warnings->push_back("a sphere of radius " + std::to_string(radius) + " cells is cut into " +
+                                std::to_string(8 * n * n) + " polygons, the limit, not finer");
+        }
+        for (int octant = 0; octant < 8; ++octant) {
+            const dvec3 sign{octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1};
+            const bool mirrored = sign.x * sign.y * sign.z < 0;
+            // A vertex is a function of three whole numbers alone, so octants share theirs bit for bit.
+            const auto normal = [&](int i, int j) { return glm::normalize(dvec3(i, j, n - i - j)) * sign; };
+            const auto facet = [&](dvec3 a, dvec3 b, dvec3 c) {
+                if (mirrored != shape.inward) std::swap(b, c);
+                const double side = shape.inward ? -1 : 1;
+                triangle({centre + radius * a, centre + radius * b, centre + radius * c},
+                         {side * a, side * b, side * c});
+            };
+            for (int i = 0; i < n; ++i) {
+                for (int j = 0; i + j < n; ++j) {
+                    facet(normal(i, j), normal(i + 1, j), normal(i, j + 1));
+                    if (i + j + 1 < n) facet(normal(i + 1, j), normal(i + 1, j + 1), normal(i, j + 1));
+                }
+            }
+        }
+    }
+
+    void cone(const ConePrimitive& shape, double chord_error, std::vector<std::string>* warnings) {
+        const dvec3 base = frame_.to_cells(shape.base);
+        const dvec3 apex = frame_.to_cells(shape.apex);
+        const double r0 = shape.base_radius / frame_.cell_width;
+        const double r1 = shape.apex_radius / frame_.cell_width;
+        const double height = glm::length(apex - base);
+        if (!(height > 0)) return;
+        const dvec3 axis = (apex - base) / height;
+        const dvec3 helper = std::abs(axis.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+        const dvec3 u = glm::normalize(glm::cross(axis, helper));
+        const dvec3 v = glm::cross(axis, u);
+        const int n = cone_facets(std::max(r0, r1), chord_error);
+        if (n == max_cone_facets && warnings) {
+            warnings->push_back("a cone of radius " + std::to_string(std::max(r0, r1)) +
+                                " cells is cut into " + std::to_string(n) + " facets, the limit, not finer");
+        }
+        const double side = shape.inward ? -1 : 1;
+        const auto radial = [&](int k) {
+            const double angle = 2 * std::acos(-1.0) * (k % n) / n;
+            return std::cos(angle) * u + std::sin(angle) * v;
+        };
+        const auto facet = [&](dvec3 a, dvec3 b, dvec3 c, dvec3 na, dvec3 nb, dvec3 nc) {
+            if (shape.inward) {
+                std::swap(b, c);
+                std::swap(nb, nc);
+            }
+            triangle({a, b, c}, {side * na, side * nb, side * nc});
+        };
+        for (int k = 0; k < n; ++k) {
+            const dvec3 e0 = radial(k);
+            const dvec3 e1 = radial(k + 1);
+            const dvec3 n0 = glm::normalize(height * e0 + (r0 - r1) * axis);
+            const dvec3 n1 = glm::normalize(height * e1 + (r0 - r1) * axis);
+            const dvec3 middle = glm::normalize(n0 + n1);
+            const dvec3 b0 = base + r0 * e0;
+            const dvec3 b1 = base + r0 * e1;
+            const dvec3 a0 = apex + r1 * e0;
+            const dvec3 a1 = apex + r1 * e1;
+            if (r0 > 0) facet(b0, b1, a1, n0, n1, r1 > 0 ? n1 : middle);
+            if (r1 > 0) facet(b0, a1, a0, r0 > 0 ? n0 : middle, n1, n0);
+        }
+    }
+
+    std::vector<Polygon> polygons;
+
+  private:
+    dvec3 to_frame(const dvec3& normal) const { return frame_.direction_to_cells(normal); }
+
+    static bool has_area(const std::vector<dvec3>& outline) {
+        const double area = glm::length(newell(outline));
+        return area > 0 && std::isfinite(area);
+    }
+
+    void triangle(const std::array<dvec3, 3>& corners, const std::array<dvec3, 3>& normals) {
+        if (!has_area({corners.begin(), corners.end()})) return;  // smaller than a double can see
+        polygons.push_back(make_triangle(next_id_++, object_, corners, normals));
+    }
+
+    const Frame& frame_;
+    std::uint32_t object_;
+    std::uint32_t next_id_;
+};
+
+}  // namespace
+
+std::vector<Polygon> tessellate(const Primitive& primitive, std::uint32_t first_id, const Frame& frame,
+                                double chord_error, std::vector<std::string>* warnings) {
+    Builder builder(primitive, first_id, frame);
+    if (const auto* polygon = std::get_if<PolygonPrimitive>(&primitive.shape)) {
+        builder.polygon(*polygon);
+    } else if (const auto* sphere = std::get_if<SpherePrimitive>(&primitive.shape)) {
+        builder.sphere(*sphere, chord_error, warnings);
+    } else {
+        builder.cone(std::get<ConePrimitive>(primitive.shape), chord_error, warnings);
+    }
+    return std::move(builder.polygons);
+}
+
+}  // namespace raycell

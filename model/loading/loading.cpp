@@ -1,0 +1,79 @@
+#include "model/loading/loading.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycell {
+
+namespace {
+
+/// Rounds a polygon to loading words.
+void hold(Polygon& polygon, const Arithmetic& arithmetic) {
+    const Format& word = arithmetic.formats().loading;
+    dvec3 centre{0, 0, 0};
+    for (dvec3& v : polygon.vertices) {
+        v = arithmetic.hold(word, v);
+        centre += v / double(polygon.vertices.size());
+    }
+    // Rounded upwards: half a last bit more than what it may be, then to the nearest.
+    polygon.slack = arithmetic.hold(word, polygon.slack * 2 + 4.5 * word.step());
+    polygon.plane = hold_plane(polygon.plane, polygon.drop, centre, word, word);
+    const dvec2 middle = project(centre, polygon.drop);
+    // An eighth of the range: the field's value at another cell may be larger than that at the origin.
+    const double most = scale_by(1, word.integer_bits() - 4);
+    polygon.normal = fill_words(polygon.normal, middle, most, 1024 * word.step());
+    polygon.normal = hold_field(polygon.normal, middle, word, word);
+}
+
+}  // namespace
+
+bool clip_to_cube(Polygon& polygon, const Box& cube, const Arithmetic& arithmetic) {
+    polygon.vertices = clip_to_box(std::move(polygon.vertices), cube);
+    if (polygon.vertices.empty()) return false;
+    if (!arithmetic.exact()) hold(polygon, arithmetic);
+    return glm::length(newell(polygon.vertices)) > 0;
+}
+
+std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings& settings,
+                                  const Arithmetic& arithmetic, LoadCounts* counts) {
+    const Frame& frame = scene.frame;
+    std::vector<CellStore> cells(std::size_t(frame.width) * std::size_t(frame.height));
+    LoadCounts total;
+    const bool gouraud = settings.display == Display::gouraud;
+    for (Polygon polygon : scene.polygons) {
+        if (!clip_to_cube(polygon, frame.cube(), arithmetic)) continue;
+        ++total.polygons;
+        for (const Trapeze& trapeze : precompute(polygon, arithmetic)) {
+            ++total.trapezes;
+            CornerIntensities shades;
+            if (gouraud) shades = shade_corners(trapeze, scene);
+            for (int row = trapeze.first_row(frame.height); row < frame.height; ++row) {
+                if (auto span =
+                        cut_span(trapeze, row, frame.width, arithmetic, gouraud ? &shades : nullptr)) {
+                    ++total.spans;
+                    for (;; advance(*span, arithmetic)) {
+                        const std::size_t cell =
+                            std::size_t(row) * std::size_t(frame.width) + std::size_t(span->x);
+                        store_voxel(cells[cell], *span, settings, frame.level(), arithmetic);
+                        if (span->x == span->last) break;
+                    }
+                }
+                if (!trapeze.reaches_below(row)) break;
+            }
+        }
+    }
+    for (CellStore& cell : cells) {
+        if (settings.shadows != Shadows::per_hit) reset_shadow_bits(cell);
+        total.voxels += cell.voxels.size();
+        total.overflowed += cell.overflowed;
+    }
+    if (counts) *counts = total;
+    return cells;
+}
+
+void reset_shadow_bits(CellStore& store) {
+    store.lit.assign(store.voxels.size(), ~std::uint64_t(0));
+    store.known.assign(store.voxels.size(), 0);
+}
+
+}  // namespace raycell

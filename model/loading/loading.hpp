@@ -1,0 +1,33 @@
+// Loading without time: the same geometry, trapezes, spans and voxels that the timed stages pass on.
+#pragma once
+
+#include <vector>
+
+#include "model/geometry/placement.hpp"
+#include "model/loading/voxel.hpp"
+#include "model/numbers/arithmetic.hpp"
+
+namespace raycell {
+
+/// Cuts a polygon to the cube; false if nothing is left. Plane and normals stay those of the whole polygon.
+/// In fixed arithmetic the result is what the geometry stage sends: loading words. A polygon whose normals
+/// turn too fast for them gets the normal of its middle.
+bool clip_to_cube(Polygon& polygon, const Box& cube, const Arithmetic& arithmetic);
+
+/// What loading handled, for the statistics.
+struct LoadCounts {
+    std::uint64_t polygons = 0;  ///< that reach into the cube
+    std::uint64_t trapezes = 0;
+    std::uint64_t spans = 0;
+    std::uint64_t voxels = 0;
+    std::uint64_t overflowed = 0;
+};
+
+/// The loaded array, row-major. Throws nothing: what does not fit a cell is counted in it.
+std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings& settings,
+                                  const Arithmetic& arithmetic, LoadCounts* counts = nullptr);
+
+/// Gives every voxel its shadow bits: lit until proved otherwise, nothing known.
+void reset_shadow_bits(CellStore& store);
+
+}  // namespace raycell

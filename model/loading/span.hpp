@@ -1,0 +1,53 @@
+// Distribution: the span that a row cuts from a trapeze and sends through its pipeline of cells (paper,
+// section 3.1).
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "model/geometry/placement.hpp"
+#include "model/loading/trapeze.hpp"
+
+namespace raycell {
+
+/// A row's part of a trapeze, seen from one cell. All functions are relative to that cell's corner (x and y
+/// fractions of the cell, z absolute); advancing to the next cell costs one addition each.
+struct Span {
+    std::uint32_t polygon = 0;
+    std::uint32_t object = 0;
+    int x = 0;     ///< the cell that it is relative to: X1 first
+    int last = 0;  ///< Xr, the last cell that it touches
+    Plane plane;
+    int drop = 2;
+    NormalField normal;
+    std::array<EdgeFunction, 4> edges;
+    int edge_count = 0;
+    double near = 0;    ///< Z: smallest depth over the cell, before the bounds below
+    double d_near = 0;  ///< DZx of near
+    double far = 0;
+    double d_far = 0;
+    double z_min = 0;  ///< bounds of the row's part: for edge-on planes they are all there is
+    double z_max = 0;
+    dvec3 slack{0, 0, 0};  ///< Trapeze::slack
+    /// What edges and bounds enclose, relative to the cell; a cell derives it, the model carries it to save
+    /// its own time.
+    std::array<dvec3, 8> outline;
+    int outline_count = 0;
+    dvec3 intensity{0, 0, 0};  ///< Gouraud: intensity at the cell's centre (only --display gouraud)
+    dvec3 d_intensity{0, 0, 0};
+};
+
+/// Intensities of a trapeze's corners, in the order of its corners (Gouraud).
+using CornerIntensities = std::array<dvec3, 4>;
+
+/// The part of a trapeze in row `row` of an array `width` cells wide; empty where it has none.
+std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width, const Arithmetic& arithmetic,
+                             const CornerIntensities* intensities = nullptr);
+
+/// Moves a span one cell to the east.
+void advance(Span& span, const Arithmetic& arithmetic);
+
+/// Shades the corners of a trapeze without shadows, seen along z: what Gouraud interpolates.
+CornerIntensities shade_corners(const Trapeze& trapeze, const CellScene& scene);
+
+}  // namespace raycell

@@ -1,0 +1,129 @@
+#include "model/machine/message.hpp"
+
+#include <algorithm>
+
+#include "model/loading/voxel.hpp"
+
+namespace raycell {
+namespace {
+
+int bits_for(int values) {
+    int bits = 0;
+    while ((1 << bits) < values) ++bits;
+    return bits;
+}
+
+}  // namespace
+
+Answer answer_to(const Ray& ray, Answer::Kind kind) {
+    Answer answer;
+    answer.kind = kind;
+    answer.id = ray.id;
+    answer.slot = ray.slot;
+    answer.home_x = ray.home_x;
+    answer.home_y = ray.home_y;
+    answer.child = ray.child;
+    answer.ray_kind = ray.kind;
+    return answer;
+}
+
+MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
+                         const Formats& formats) {
+    const int word = formats.word_bits;
+    constexpr int type = 3;
+    constexpr int polygon_id = 20;
+    constexpr int generation = 6;
+    constexpr int child = 6;
+    const int home = bits_for(picture.width) + bits_for(picture.height);
+    // A slot, or none (the pixel itself); verdicts on voxels name the voxel instead, up to 1024 in a cell.
+    constexpr int voxel_index = 10;
+    int slot = bits_for(machine.ray_store + 1);
+    if (picture.shadows != Shadows::per_hit) slot = std::max(slot, voxel_index);
+    const int address = home + slot + child;
+    MessageBits bits;
+    // Place, direction, the reciprocals of dx and dy (mantissas; their signs are the direction's).
+    const int place = 2 * word + formats.depth_word_bits();
+    const int way = place + 3 * word + 2 * (word + Formats::exponent_bits);
+    // A weight, or for a shadow ray the distance to its source; flags: fresh, outside, side left.
+    bits.ray = type + way + word + polygon_id + generation + address + 3;
+    bits.shadow_ray = type + way + word + polygon_id + address + 3;
+    bits.intensity = type + 3 * word + address;
+    bits.verdict = type + address;
+    const int loading = formats.loading.bits();
+    const int columns = 2 * bits_for(picture.width);
+    const int gouraud = picture.display == Display::gouraud ? 6 * loading : 0;
+    const int normals = 9 * loading;
+    const int plane = 4 * loading + 3;  // two slopes, offset, slack; dominant axis and its sign
+    const int edges = 4 * 3 * loading + 3;
+    // X1, Xr, near and far with their increment and bounds, plane, normal field, edges (paper, section 3.1).
+    bits.span = type + polygon_id + columns + 5 * loading + plane + normals + edges + gouraud;
+    bits.trapeze = type + polygon_id + 4 * 3 * loading + plane + normals + edges + 2 * gouraud;
+    bits.polygon = type + polygon_id + plane + normals;
+    bits.vertex = 3 * loading;
+    bits.features = type + feature_bits(formats);
+    bits.end_of_scene = type;
+    bits.viewer = type + formats.place_bits() + 6;
+    bits.source = formats.place_bits() + 3 * word;
+    return bits;
+}
+
+BufferClasses buffer_classes(Networks networks) {
+    BufferClasses classes;
+    classes.networks = networks;
+    switch (networks) {
+        case Networks::shared:
+            classes.count = 1;
+            classes.answer = 0;
+            break;
+        case Networks::split:
+            classes.count = 2;
+            classes.answer = 1;
+            break;
+        case Networks::half:
+            classes.count = 3;
+            classes.answer = 2;
+            break;
+        case Networks::quadrant:
+            classes.count = 5;
+            classes.answer = 4;
+            break;
+    }
+    return classes;
+}
+
+const char* class_name(Networks networks, int index) {
+    static const char* const quadrants[] = {"ray_east_south", "ray_west_south", "ray_east_north",
+                                            "ray_west_north", "answer"};
+    static const char* const halves[] = {"ray_east", "ray_west", "answer"};
+    static const char* const split[] = {"ray", "answer"};
+    if (networks == Networks::quadrant) return quadrants[index];
+    if (networks == Networks::half) return halves[index];
+    return networks == Networks::split ? split[index] : "all";
+}
+
+int BufferClasses::ray(const Ray& r) const {
+    const int west = r.direction.x < 0 ? 1 : 0;
+    const int north = r.direction.y < 0 ? 1 : 0;
+    if (networks == Networks::half) return west;
+    if (networks == Networks::quadrant) return 2 * north + west;
+    return 0;
+}
+
+bool BufferClasses::used(int index, bool horizontal, Side side) const {
+    if (index == answer || networks == Networks::shared || networks == Networks::split) return true;
+    const bool west = index & 1;
+    if (horizontal) return west == (side == Side::west);
+    if (networks == Networks::half) return true;
+    return (index >> 1 & 1) == (side == Side::north ? 1 : 0);
+}
+
+std::uint32_t BufferClasses::used_over(Side side) const {
+    const bool horizontal = side == Side::east || side == Side::west;
+    std::uint32_t bits = 0;
+    for (int index = 0; index < count; ++index) {
+        if (used(index, horizontal, side)) bits |= 1U << unsigned(index);
+    }
+    return bits;
+}
+
+}  // namespace raycell

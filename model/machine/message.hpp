@@ -1,0 +1,63 @@
+// What travels over the links, and how many bits each kind takes there.
+#pragma once
+
+#include <cstdint>
+
+#include "model/settings/settings.hpp"
+#include "model/tracing/ray.hpp"
+
+namespace raycell {
+
+/// The way back: an intensity, a verdict on a source, or the notice that a ray was destroyed and must be sent
+/// again.
+struct alignas(64) Answer {
+    enum class Kind : std::uint8_t { intensity, lit, blocked, postponed };
+    dvec3 colour{0, 0, 0};
+    std::uint64_t id = 0;      ///< of the ray that it answers
+    std::uint32_t slot = 0;    ///< as in the ray
+    std::uint16_t home_x = 0;  ///< destination
+    std::uint16_t home_y = 0;
+    std::uint8_t child = 0;
+    RayKind ray_kind = RayKind::primary;
+    Kind kind = Kind::intensity;
+};
+Answer answer_to(const Ray& ray, Answer::Kind kind);
+
+/// Bits of the messages, for an array of width x height cells and M slots; docs/cell.md has the table.
+struct MessageBits {
+    int ray = 0;
+    int shadow_ray = 0;  ///< a ray with its distance to the source
+    int intensity = 0;
+    int verdict = 0;  ///< also the postponed notice
+    int span = 0;
+    int trapeze = 0;
+    int polygon = 0;  ///< without its vertices
+    int vertex = 0;
+    int features = 0;
+    int end_of_scene = 0;
+    int setup(std::size_t sources) const { return viewer + int(sources) * source; }
+    int viewer = 0;
+    int source = 0;
+};
+MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
+                         const Formats& formats);
+
+/// Cycles that `bits` take over a link of `link_bits`.
+constexpr int link_cycles(int bits, int link_bits) { return (bits + link_bits - 1) / link_bits; }
+
+/// Buffer classes of a link: which messages share a buffer (design, section 5).
+struct BufferClasses {
+    int count = 2;   ///< buffers that an index below may name
+    int answer = 1;  ///< class of answers
+    int ray(const Ray& r) const;
+    bool used(int index, bool horizontal,
+              Side side) const;  ///< whether a link in this direction has the buffer
+    /// The classes, as bits, of a link over this side of its source.
+    std::uint32_t used_over(Side side) const;
+    Networks networks = Networks::split;
+};
+BufferClasses buffer_classes(Networks networks);
+/// Name of a buffer class as statistics and reports print it: "ray_east", "answer".
+const char* class_name(Networks networks, int index);
+
+}  // namespace raycell

@@ -1,0 +1,150 @@
+// The cell's arithmetic, exact (double precision) or fixed (words), chosen at run time. Walk, hit tests and
+// shading are written once, over this: every value that a register, a voxel or a message keeps goes through a
+// format. In exact arithmetic a format changes nothing.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/numbers/fixed.hpp"
+#include "model/numbers/operators.hpp"
+#include "model/settings/settings.hpp"
+
+namespace raycell {
+
+using glm::dvec3;
+
+/// What the formats depend on besides the word: how far numbers can reach in an array. Cell widths.
+struct ArrayExtent {
+    int width = 1;
+    int height = 1;
+    double depth = 1;
+    double level = 1;
+};
+
+/// The formats of one machine; docs/numbers.md is their table. F = word_bits - 2. They size messages and
+/// voxels in exact arithmetic too.
+struct Formats {
+    int word_bits = 20;
+    int depth_bits = 0;  ///< integer bits of a depth within the cube
+    Format unit;         ///< Q2.F: place in a cell, directions, slopes, cosines, shares of intensity
+    Format depth;        ///< F fraction bits, integer part to the cube's depth: z, and what a plane is off by
+    Format distance;     ///< F fraction bits, integer part to the cube's diagonal: way in a cell, a register
+    Format reach;        ///< word_bits: distance to a source; its end counts as infinite
+    Format offset;       ///< word_bits: a plane's offset, relative to the cell and to its voxel's run
+    Format edge_offset;  ///< F fraction bits: an edge's offset, over the run
+    Format normal;       ///< word_bits, Q4: normal field
+    Format field;        ///< Q6.(F + 2): accumulator read out before normalising
+    Format accumulator;  ///< Q4.2F, 44 bits at most: a dot product of words before it is rounded
+    Format intensity;    ///< word_bits, Q4: intensities, saturating at 8
+    Format feature;      ///< unsigned Q2, 12 bits, longer in words of over 20: colours, Kd, Ks, T
+    Format ior;          ///< unsigned Q2, 16 bits, longer in words of over 20: index of refraction
+    Format loading;      ///< word_bits + 16: polygons, trapezes, spans; guard bits for their increments
+
+    /// Throws std::invalid_argument for a word length outside 8 to 32.
+    Formats(int word_bits, Rounding rounding, const ArrayExtent& extent);
+    Formats() : Formats(20, Rounding::nearest, ArrayExtent()) {}
+
+    int feature_bits() const { return feature.bits() - 1; }  ///< without the sign
+    int ior_bits() const { return ior.bits() - 1; }
+    int depth_word_bits() const { return depth_bits + word_bits; }  ///< of a depth in a message or a voxel
+    int place_bits() const { return 3 * (word_bits + 12) + exponent_bits; }
+    static constexpr int exponent_bits = 6;
+    static constexpr int shine_exponent_bits = 5;  ///< from 2^-8; 0 is none
+    int shine_bits = 12;  ///< a float: exponent and the fraction's bits, 7 or more in words of over 20
+
+    /// The formats by name, as "Q2.18"; unsigned ones as "UQ2.10".
+    std::vector<std::pair<std::string, std::string>> names() const;
+};
+
+class Arithmetic {
+  public:
+    /// Double precision.
+    Arithmetic();
+    /// Throws std::invalid_argument for a word length outside 8 to 32, or a table size that is not allowed.
+    Arithmetic(const NumberSettings& settings, const ArrayExtent& extent);
+
+    bool exact() const { return exact_; }
+    const Formats& formats() const { return formats_; }
+
+    double hold(const Format& f, double x) const { return exact_ ? x : f.hold(x); }
+    dvec3 hold(const Format& f, const dvec3& v) const {
+        return exact_ ? v : dvec3(f.hold(v.x), f.hold(v.y), f.hold(v.z));
+    }
+
+    /// c + a·b (+ ...), one rounding at the end.
+    double mac(const Format& f, double c, double a, double b) const {
+        if (exact_) return c + a * b;
+        return narrow_ ? f.hold(c + a * b) : wide(f, c, a, b, 0, 0, 0, 0);
+    }
+    double mac(const Format& f, double c, double a1, double b1, double a2, double b2) const {
+        if (exact_) return c + a1 * b1 + a2 * b2;
+        return narrow_ ? f.hold(a1 * b1 + a2 * b2 + c) : wide(f, c, a1, b1, a2, b2, 0, 0);
+    }
+    double mac(const Format& f, double c, double a1, double b1, double a2, double b2, double a3,
+               double b3) const {
+        if (exact_) return c + (a1 * b1 + a2 * b2 + a3 * b3);
+        return narrow_ ? f.hold(a1 * b1 + a2 * b2 + a3 * b3 + c) : wide(f, c, a1, b1, a2, b2, a3, b3);
+    }
+    double product(const Format& f, double a, double b) const { return mac(f, 0.0, a, b); }
+    double dot(const Format& f, const dvec3& a, const dvec3& b) const {
+        return mac(f, 0.0, a.x, b.x, a.y, b.y, a.z, b.z);
+    }
+    /// c + s·v, a component each.
+    dvec3 along(const Format& f, const dvec3& c, double s, const dvec3& v) const {
+        return {mac(f, c.x, s, v.x), mac(f, c.y, s, v.y), mac(f, c.z, s, v.z)};
+    }
+
+    /// 1/x for x != 0: a mantissa of word_bits bits with an exponent of its own.
+    double reciprocal(double x) const { return exact_ ? 1.0 / x : operators_->reciprocal(x); }
+    /// sqrt(x) = x/sqrt(x), x >= 0, as a unit word (x up to 4).
+    double square_root(double x) const;
+    double power(double base, double exponent) const {
+        return exact_ ? std::pow(base, exponent) : operators_->power(base, exponent);
+    }
+    /// v/|v|; v is not 0. Fixed: shifted until its largest component fills a word, then 1/sqrt.
+    dvec3 normalise(const dvec3& v) const;
+    /// The same, and |v|, unrounded but for the operator.
+    dvec3 normalise(const dvec3& v, double& length) const;
+
+    /// Distances below this are rounding, not geometry (cells): points so far outside an edge, or behind the
+    /// end of a cell, count as inside, so that neighbours leave no crack.
+    double hair() const { return hair_; }
+    /// Surfaces met at distances that differ by no more are met at the same: the lower polygon id counts.
+    double tie() const { return tie_; }
+    /// A ray that meets a neighbour of the polygon it leaves nearer than this met it at their shared edge.
+    double least_fresh_distance() const { return least_fresh_distance_; }
+    /// What a negative PictureSettings::normal_offset stands for, cells.
+    double default_normal_offset() const { return default_normal_offset_; }
+
+    /// A distance to a source: infinite where the word saturates, since no way within the cube is so long.
+    double hold_reach(double distance) const;
+    /// A place that may lie far outside the array (source, viewer): word_bits + 12 bits each, one exponent.
+    dvec3 hold_place(const dvec3& place) const;
+
+    /// Phong's power as the features carry it.
+    double hold_shine(double shine) const;
+
+  private:
+    double wide(const Format& f, double c, double a1, double b1, double a2, double b2, double a3,
+                double b3) const;
+
+    bool exact_ = true;
+    bool narrow_ = true;  ///< every sum of products fits a double's 53 bits
+    double hair_;
+    double tie_;
+    double least_fresh_distance_;
+    double default_normal_offset_;
+    Formats formats_;
+    Format mantissa_;  ///< Q1.(word_bits - 1)
+    std::shared_ptr<const Operators> operators_;
+};
+
+/// The arithmetic of the truth and the exterior.
+const Arithmetic& exact_arithmetic();
+
+}  // namespace raycell

@@ -1,0 +1,84 @@
+// The cell's operators for what its ALU has no instruction for (paper, section 4.1: approximations of square
+// root, division and exponentiation): reciprocal, 1/sqrt and power, each by a method of choice.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "model/numbers/fixed.hpp"
+#include "model/settings/settings.hpp"
+
+namespace raycell {
+
+/// Lines of the tables: those asked for, or what the word length needs. Power has two of its size.
+struct TableSizes {
+    int reciprocal;
+    int root;
+    int power;
+};
+TableSizes table_sizes(const OperatorSettings& settings, int word_bits);
+
+/// The operators of one word length W. Arguments and results are mantissas of W bits, unsigned, 1.(W - 1),
+/// with a sign and an exponent beside them: normalised by a leading-zero count, so their accuracy is relative
+/// and does not depend on magnitude. An argument is first rounded to such a mantissa by the rounding mode,
+/// which acts on magnitudes here: to truncate goes towards 0. Powers of two (reciprocal) and of four
+/// (inverse_root) give exact results. Whatever a register holds in between is a word of W bits too; products
+/// and their sums are exact until they are rounded to a word. Tables hold the nearest words in either mode,
+/// and a line between neighbours: results of `table` are continuous and monotone. Nothing throws, and every
+/// finite argument has a finite result; sense is the caller's.
+class Operators {
+  public:
+    /// Builds the tables. Throws std::invalid_argument for a table size that is no power of two from 4 to
+    /// 4096 and for words other than of 8 to 32 bits.
+    Operators(const OperatorSettings& settings, int word_bits, Rounding rounding);
+
+    /// 1/x, its mantissa in [0.5, 1]. For |x| < 2^-127, 0 too: the largest mantissa times 2^127, with the
+    /// sign of x; products with it are still finite.
+    double reciprocal(double x) const;
+    /// 1/sqrt(x), of x normalised by an even exponent to 2.(W - 2) in [1, 4); its mantissa in [0.5, 1]. Half
+    /// of the table's lines lie over [1, 2), half over [2, 4): the exponent's last bit and the leading bits
+    /// behind the 1 select one. For x < 2^-254, 0 and less too: as the reciprocal of 0.
+    double inverse_root(double x) const;
+    /// base^exponent as a word Q2.(W - 2), 0 to 1. The base is from 0 to 1, beyond counts as the nearer end;
+    /// so does the exponent beyond 0 to 2^19, which is held with W - 12 fraction bits, 8 at least (`schlick`:
+    /// 8). 0^0 = 1, as in Phong's term with Shine 0. Least base that `tables` tells from smaller ones: 2^-32.
+    double power(double base, double exponent) const;
+
+    const OperatorSettings& settings() const { return settings_; }
+
+  private:
+    using Word = std::uint64_t;  ///< raw bits of a word, or of a double-length product
+
+    /// A function as lines between words on its curve.
+    struct Table {
+        struct Line {
+            Word start;
+            std::int64_t rise;  ///< to the start of the next line
+        };
+        std::vector<Line> lines;  ///< no more than there are arguments
+        int rest_bits;            ///< of the argument, behind those that select the line
+    };
+
+    template <class Curve>
+    static Table tabulate(int size, int argument_bits, Curve curve);
+    double signed_limit(double x) const;
+    Word round_off(Word value, int drop) const;
+    Word line_value(const Table& table, Word argument) const;
+    Word reciprocal_mantissa(Word m) const;
+    Word root_mantissa(Word m) const;
+    Word tables_power(Word m, int exponent, Word power) const;
+    Word schlick_power(Word base, Word power) const;
+
+    OperatorSettings settings_;
+    int fraction_bits_;  ///< of a mantissa: W - 1
+    bool nearest_;
+    int exponent_bits_;  ///< fraction bits of power's exponent
+    Format power_word_;
+    Format exponent_word_;  ///< holds exponents of power
+    Table reciprocals_;     ///< 1/m over [1, 2)
+    Table roots_[2];        ///< 1/sqrt(m) over [1, 2) and over [2, 4), as many lines each
+    Table logarithms_;      ///< log2(m) over [1, 2)
+    Table exponentials_;    ///< 2^f over [0, 1)
+};
+
+}  // namespace raycell

@@ -1,0 +1,84 @@
+// The typed, defaulted configuration of one run; every module gets its own part by const reference.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/settings/costs.hpp"
+
+namespace raycell {
+
+enum class HitTest { depth, interval, plane, mask, edge };  ///< the ladder, cheapest first
+enum class Normals { voxel, linear };
+enum class Shadows { per_hit, precast, memo };
+enum class ExteriorMode { none, host };
+enum class Networks { shared, split, quadrant, half };
+enum class Recovery { none, postpone };
+enum class Slots { reserved, free, nested };  ///< which rays find a slot (cells/deadlock/deadlock.md)
+enum class Numbers { fixed, exact };          ///< words of fixed length, or double precision
+/// What becomes of the bits behind the last one: to the nearest, ties to even (SystemC's SC_RND_CONV), or cut
+/// off (SC_TRN, towards minus infinity).
+enum class Rounding { nearest, truncate };
+enum class Engine { timed, untimed };
+enum class RunStage { load, trace };
+enum class Display { gouraud, phong };
+enum class ViewerMode { scene, infinity };
+
+/// A rectangle of cells, both ends included.
+struct CellRange {
+    int x0 = 0;
+    int x1 = 0;
+    int y0 = 0;
+    int y1 = 0;
+    bool contains(int x, int y) const { return x >= x0 && x <= x1 && y >= y0 && y <= y1; }
+};
+
+/// The cell's arithmetic. The operators' methods count for their cycles in exact arithmetic too.
+struct NumberSettings {
+    Numbers arithmetic = Numbers::fixed;
+    int word_bits = 20;  ///< of messages, voxels and the ALU, 8..32
+    Rounding rounding = Rounding::nearest;
+    OperatorSettings operators;
+};
+
+/// What the picture depends on: scene placement, voxels, ray tree. Both engines use all of it.
+struct PictureSettings {
+    int width = 128;          ///< cells, 1..4096
+    int height = 128;         ///< cells, 1..4096
+    int depth_levels = 1024;  ///< 1..65536
+    ViewerMode viewer = ViewerMode::scene;
+    RunStage stage = RunStage::trace;
+    Display display = Display::phong;
+    HitTest hit = HitTest::edge;
+    Normals normals = Normals::linear;
+    Shadows shadows = Shadows::per_hit;
+    ExteriorMode exterior = ExteriorMode::host;
+    int max_depth = 4;              ///< generations after the primary ray, 0..62
+    double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut
+    /// Cells, along the polygon's normal, to the side the new ray goes; negative: what suits the arithmetic.
+    double normal_offset = -1;
+    double chord_error = 0.1;  ///< cells, largest gap between a curved object and its polygons
+    int voxel_capacity = 0;    ///< voxels a cell can hold; 0: unlimited
+    NumberSettings numbers;
+};
+
+/// What only time depends on: invariant 2 says that none of it changes the picture.
+struct MachineSettings {
+    int ray_store = 8;     ///< M, slots per cell, >= 1
+    int buffer_depth = 1;  ///< messages per buffer, >= 1
+    Networks networks = Networks::half;
+    Recovery recovery = Recovery::postpone;
+    Slots slots = Slots::reserved;
+    int link_bits = 20;  ///< bits that cross a link per cycle, >= 1
+    double clock_mhz = 20;
+    std::int64_t max_cycles = 0;   ///< 0: no limit
+    int exterior_processors = 64;  ///< >= 1
+    int exterior_latency = 200;    ///< cycles per ray handed to an exterior processor, >= 1
+    std::uint64_t seed = 1;        ///< of the back-off's jitter and of random stalls
+    /// Probability that a transfer over a link, or an operation of a unit, takes one cycle more; and again.
+    double stall = 0;
+    CostTable costs;
+};
+
+}  // namespace raycell

@@ -1,0 +1,174 @@
+#include "model/tracing/intersect.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycell {
+namespace {
+
+/// Where the ray enters the depths [near, far], or nothing if it doesn't between 0 and t_end.
+std::optional<double> enter_run(const Ray& ray, double t_end, double near, double far,
+                                const Arithmetic& arithmetic) {
+    const double z0 = ray.position.z;
+    const double dz = ray.direction.z;
+    const double z1 = depth_at(ray, t_end, arithmetic);
+    if (std::max(z0, z1) < near || std::min(z0, z1) > far) return std::nullopt;
+    if (z0 >= near && z0 <= far) return 0.0;
+    const double t = arithmetic.product(arithmetic.formats().distance, (dz > 0 ? near : far) - z0,
+                                        arithmetic.reciprocal(dz));
+    return std::clamp(t, 0.0, t_end);
+}
+
+/// Place in the projection, z relative to the voxel's base.
+dvec2 place_of(const Voxel& voxel, const dvec3& point) {
+    return project({point.x, point.y, point.z - voxel.base}, voxel.drop);
+}
+
+bool inside_pieces(const CellStore& store, const Voxel& voxel, const dvec3& point,
+                   const Arithmetic& arithmetic) {
+    if (voxel.pieces == 0) return true;
+    const dvec2 uv = place_of(voxel, point);
+    const Format& word = arithmetic.formats().edge_offset;
+    const double outside = -arithmetic.hair();
+    const EdgeFunction* edge = store.edges.data() + voxel.first_edge;
+    const EdgeFunction* const end = edge + voxel.edge_count;
+    while (edge != end) {
+        const std::uint32_t piece = edge->piece;
+        bool inside = true;
+        for (; edge != end && edge->piece == piece; ++edge) {
+            inside = inside && arithmetic.mac(word, edge->c, edge->a, uv.x, edge->b, uv.y) >= outside;
+        }
+        if (inside) return true;
+    }
+    return false;
+}
+
+/// `room`: what the point may be off by, cells.
+bool inside_mask(const Voxel& voxel, const dvec3& point, double room, const Arithmetic& arithmetic) {
+    const Format& word = arithmetic.formats().field;
+    dvec3 scaled = point;
+    dvec3 rooms(room);
+    if (voxel.drop != 2) {
+        const double per_run = arithmetic.reciprocal(voxel.far - voxel.near);
+        scaled.z = arithmetic.product(word, point.z - voxel.near, per_run);
+        rooms.z = room * per_run;
+    }
+    const dvec2 uv = project(scaled, voxel.drop) * double(window_steps);
+    const dvec2 room_uv = project(rooms, voxel.drop) * double(window_steps);
+    const dvec2 low{voxel.window[0], voxel.window[2]};
+    const dvec2 high{voxel.window[1], voxel.window[3]};
+    const dvec2 size = high - low;
+    int bit[2] = {0, 0};
+    for (int axis = 0; axis < 2; ++axis) {
+        const double per_window = arithmetic.reciprocal(size[axis]);
+        const double place = arithmetic.product(word, uv[axis] - low[axis], per_window);
+        // The neighbour's mask must not leave a crack.
+        const double rounding = arithmetic.exact() ? 1e-6 : room_uv[axis] * per_window;
+        if (place < -rounding || place > 1 + rounding) return false;
+        bit[axis] = std::clamp(int(place * 8), 0, 7);
+    }
+    return voxel.mask >> (8 * bit[1] + bit[0]) & 1;
+}
+
+/// Distance at which the ray meets the voxel's plane, and how it meets it.
+struct Meeting {
+    double t;
+    double along;  ///< plane normal · direction
+    double room;   ///< what t may be off by
+};
+std::optional<Meeting> meet_plane(const Voxel& voxel, const Ray& ray, const Arithmetic& arithmetic) {
+    const Formats& formats = arithmetic.formats();
+    const dvec3& n = voxel.plane.n;
+    const dvec3& p = ray.position;
+    const dvec3& d = ray.direction;
+    // The accumulator itself: the reciprocal normalises it.
+    const double along = arithmetic.dot(formats.accumulator, n, d);
+    if (std::abs(along) < 1e-12) return std::nullopt;  // in the plane: it meets the polygon's neighbours
+    const double off =
+        arithmetic.mac(formats.depth, voxel.plane.c, -n.x, p.x, -n.y, p.y, -n.z, p.z - voxel.base);
+    const double inverse = arithmetic.reciprocal(along);
+    // A word's error in `off` grows in t as the ray grazes: a fixed room would let it through at a cell's
+    // border.
+    constexpr double most_growth = 1024;
+    const double growth = arithmetic.exact() ? 1 : std::clamp(std::abs(inverse), 1.0, most_growth);
+    return Meeting{arithmetic.product(formats.distance, off, inverse), along, arithmetic.hair() * growth};
+}
+
+}  // namespace
+
+std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, const Ray& ray, double t_end,
+                                HitTest test, double level, const Arithmetic& arithmetic) {
+    if (test == HitTest::depth) {
+        // Levels, not depths, are compared: a run touched from outside at its border is another level.
+        const auto t = enter_run(ray, t_end, voxel.near, voxel.far, arithmetic);
+        if (!t) return t;
+        const double z1 = depth_at(ray, t_end, arithmetic);
+        const double low = std::floor(std::min(ray.position.z, z1) / level);
+        const double high = std::floor(std::max(ray.position.z, z1) / level);
+        if (voxel.near_level < low || voxel.near_level > high) return std::nullopt;
+        return t;
+    }
+    if (test == HitTest::interval) return enter_run(ray, t_end, voxel.near, voxel.far, arithmetic);
+
+    const auto meeting = meet_plane(voxel, ray, arithmetic);
+    if (!meeting) return std::nullopt;
+    const double t = meeting->t;
+    // Only a ray that leaves a surface has neighbours of it to pass by.
+    const bool leaves = ray.fresh && ray.leaves != no_polygon;
+    const double t_least = leaves ? arithmetic.least_fresh_distance() : -meeting->room;
+    if (!(t >= t_least && t <= t_end + meeting->room)) return std::nullopt;
+    // Without edges a polygon's plane runs on over its neighbours. A ray that leaves one side of a surface
+    // first meets that same side of its next part: in its first cell, the other side is such an overrun.
+    const bool overruns = test == HitTest::plane || test == HitTest::mask;
+    if (overruns && leaves && ray.leaves_front == (meeting->along > 0)) {
+        return std::nullopt;
+    }
+    const dvec3 point = point_at(ray, t, arithmetic);
+    if (point.z < voxel.near - meeting->room || point.z > voxel.far + meeting->room) return std::nullopt;
+    if (test == HitTest::mask && !inside_mask(voxel, point, meeting->room, arithmetic)) return std::nullopt;
+    if (test == HitTest::edge && !inside_pieces(store, voxel, point, arithmetic)) return std::nullopt;
+    return std::max(t, 0.0);
+}
+
+namespace {
+
+/// Which of two hits counts. Voxels come in the order of their polygons, so one comparison with what is kept
+/// is enough: a later one must be nearer by more than a tie.
+bool precedes(double t, std::uint32_t polygon, double kept_t, std::uint32_t kept_polygon, double tie) {
+    return polygon < kept_polygon ? t <= kept_t + tie : t < kept_t - tie;
+}
+
+}  // namespace
+
+std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
+                                       double level, const Arithmetic& arithmetic, Comparisons* comparisons,
+                                       const DepthRun* runs, std::uint32_t run_count) {
+    std::optional<CellHit> best;
+    if (!runs) run_count = std::uint32_t(store.voxels.size());
+    if (comparisons) comparisons->runs += run_count;
+    if (run_count == 0) return best;
+    const double z1 = depth_at(ray, t_end, arithmetic);
+    const double z_low = std::min(ray.position.z, z1) - arithmetic.hair();
+    const double z_high = std::max(ray.position.z, z1) + arithmetic.hair();
+    for (std::uint32_t i = 0; i < run_count; ++i) {
+        if (runs && (runs[i].near > z_high || runs[i].far < z_low)) continue;
+        const Voxel& voxel = store.voxels[i];
+        if (!runs && (voxel.near > z_high || voxel.far < z_low)) continue;
+        if (voxel.polygon == ray.leaves) continue;
+        if (comparisons) {
+            ++comparisons->tests;
+            comparisons->edges += voxel.edge_count;
+        }
+        const auto t = hit_voxel(store, voxel, ray, t_end, test, level, arithmetic);
+        if (!t) continue;
+        const bool tied = best && std::abs(*t - best->t) <= arithmetic.tie();
+        if (!best ||
+            precedes(*t, voxel.polygon, best->t, store.voxels[best->voxel].polygon, arithmetic.tie())) {
+            best = CellHit{*t, i};
+        }
+        best->tied = best->tied || tied;
+    }
+    return best;
+}
+
+}  // namespace raycell

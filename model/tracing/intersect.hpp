@@ -1,0 +1,38 @@
+// The ladder of hit tests (design, section 4): pure functions, one voxel or one cell at a time.
+#pragma once
+
+#include <optional>
+
+#include "model/loading/voxel.hpp"
+#include "model/tracing/ray.hpp"
+
+namespace raycell {
+
+/// Distance along the ray at which it hits the voxel within the cell, if it does before t_end.
+/// A fresh ray may not hit behind its origin; others may by a hair, so that no hit falls between two cells.
+std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, const Ray& ray, double t_end,
+                                HitTest test, double level, const Arithmetic& arithmetic);
+
+struct CellHit {
+    double t = 0;
+    std::uint32_t voxel = 0;
+    bool tied = false;  ///< another was met at the same distance
+};
+
+/// How much a cell compared: what the traversal unit's time is made of.
+struct Comparisons {
+    std::uint32_t runs = 0;   ///< voxels whose depth run was compared with the ray's
+    std::uint32_t tests = 0;  ///< of these, voxels that the rung's own test was made on
+    std::uint32_t edges = 0;  ///< edge functions of these (rung `edge`)
+};
+
+/// The nearest hit in a cell; within Arithmetic::tie() the lowest polygon id. For shadow rays any hit will
+/// do, but the nearest is found all the same: the cell has one comparison unit for both. `runs`: if not null,
+/// the depths of all `run_count` voxels of the store, which then is only looked at where the ray's own run
+/// meets one of theirs.
+std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
+                                       double level, const Arithmetic& arithmetic,
+                                       Comparisons* comparisons = nullptr, const DepthRun* runs = nullptr,
+                                       std::uint32_t run_count = 0);
+
+}  // namespace raycell

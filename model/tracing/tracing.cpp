@@ -1,0 +1,404 @@
+#include "model/tracing/tracing.hpp"
+
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <stdexcept>
+
+#include "model/tracing/traffic.hpp"
+
+namespace raycell {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// 32-bit finaliser of MurmurHash3: ids that depend on the tree alone, not on when a ray was sent.
+std::uint32_t mix(std::uint32_t h) {
+    h ^= h >> 16;
+    h *= 0x85ebca6bU;
+    h ^= h >> 13;
+    h *= 0xc2b2ae35U;
+    return h ^ h >> 16;
+}
+
+std::uint64_t child_id(std::uint64_t parent, unsigned child) {
+    return (parent & ~std::uint64_t(0xffffffffU)) | mix(std::uint32_t(parent) * 31 + child + 1);
+}
+
+/// Starts a ray off a polygon: a small way along its normal, to the side that the ray goes to. (In words the
+/// normal is not unit but 1 along the polygon's dominant axis; the way is up to 1.7 times the offset.)
+void leave_surface(Ray& ray, const Context& context, const dvec3& local, const Voxel& voxel) {
+    const Arithmetic& arithmetic = context.arithmetic;
+    const Formats& formats = arithmetic.formats();
+    const dvec3& n = voxel.plane.n;
+    const double along = arithmetic.dot(formats.accumulator, n, ray.direction);
+    const double offset = along < 0 ? -context.normal_offset : context.normal_offset;
+    ray.position = {arithmetic.mac(formats.unit, local.x, offset, n.x),
+                    arithmetic.mac(formats.unit, local.y, offset, n.y),
+                    arithmetic.mac(formats.depth, local.z, offset, n.z)};
+    ray.position.x = std::clamp(ray.position.x, 0.0, 1.0);
+    ray.position.y = std::clamp(ray.position.y, 0.0, 1.0);
+    ray.leaves = voxel.polygon;
+    ray.leaves_front = along >= 0;
+}
+
+Ray child_of(const Ray& parent, RayKind kind, unsigned child, int x, int y) {
+    Ray ray;
+    ray.kind = kind;
+    ray.child = std::uint8_t(child);
+    ray.id = child_id(parent.id, (unsigned(kind) << 8) + child);
+    ray.home_x = std::uint16_t(x);
+    ray.home_y = std::uint16_t(y);
+    ray.generation = std::uint8_t(parent.generation + 1);
+    return ray;
+}
+
+Ray secondary_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
+                  const HitSetup& setup, RayKind kind, const dvec3& direction, double share, int x, int y) {
+    Ray ray = child_of(parent, kind, kind == RayKind::reflected ? 0 : 1, x, y);
+    ray.weight = context.arithmetic.product(context.arithmetic.formats().unit, parent.weight, share);
+    if (context.traffic) {
+        context.traffic->start_child(ray, parent, context, store, setup);
+        return ray;
+    }
+    set_direction(ray, direction, context.arithmetic);
+    leave_surface(ray, context, setup.local, store.voxels[hit.voxel]);
+    return ray;
+}
+
+}  // namespace
+
+Material hold(const Material& material, const Arithmetic& arithmetic) {
+    if (arithmetic.exact()) return material;
+    const Formats& f = arithmetic.formats();
+    const auto unsigned_word = [](const Format& format, double x) { return std::max(format.hold(x), 0.0); };
+    Material held = material;
+    for (int channel = 0; channel < 3; ++channel) {
+        held.colour[channel] = unsigned_word(f.feature, material.colour[channel]);
+    }
+    held.diffuse = unsigned_word(f.feature, material.diffuse);
+    held.specular = unsigned_word(f.feature, material.specular);
+    held.transmit = unsigned_word(f.feature, material.transmit);
+    held.shine = arithmetic.hold_shine(material.shine);
+    held.ior = std::max(f.ior.hold(material.ior), f.ior.step());  // 0 would have no reciprocal
+    return held;
+}
+
+Context::Context(const CellScene& placed, const PictureSettings& picture_settings,
+                 const SyntheticTraffic* synthetic)
+    : scene(placed),
+      settings(picture_settings),
+      arithmetic(settings.numbers, extent_of(placed.frame)),
+      traffic(synthetic) {
+    if (traffic && (!arithmetic.exact() || settings.exterior != ExteriorMode::none ||
+                    settings.shadows != Shadows::per_hit || settings.stage != RunStage::trace)) {
+        throw std::invalid_argument(
+            "synthetic traffic: expected exact arithmetic, no exterior, shadows per hit, and tracing");
+    }
+    const Formats& f = arithmetic.formats();
+    for (const Material& material : placed.objects) objects.push_back(hold(material, arithmetic));
+    for (const Source& source : placed.sources) {
+        sources.push_back(
+            {arithmetic.hold_place(source.position), arithmetic.hold(f.intensity, source.intensity)});
+    }
+    background = arithmetic.hold(f.intensity, placed.background);
+    eye = arithmetic.hold_place(placed.frame.eye);
+    depth = arithmetic.hold(f.depth, placed.frame.depth);
+    // Exact distances to a polygon and its edges need no help; runs and masks do.
+    const bool none = arithmetic.exact() && settings.hit == HitTest::edge;
+    const double suitable = none ? 0 : arithmetic.default_normal_offset();
+    normal_offset = arithmetic.hold(f.unit, settings.normal_offset < 0 ? suitable : settings.normal_offset);
+}
+
+Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context, const DepthRun* runs,
+                 std::uint32_t run_count) {
+    if (context.traffic) return context.traffic->visit_cell(store, ray, context);
+    const Arithmetic& arithmetic = context.arithmetic;
+    Visit visit;
+    if (ray.outside) {
+        visit.crossing = border_crossing(ray, arithmetic);
+        return visit;
+    }
+    visit.crossing = next_crossing(ray, arithmetic);
+    const double dz = ray.direction.z;
+    double t_end = visit.crossing.t;
+    // The division is only for rays that leave.
+    const double z_end = dz == 0 ? ray.position.z : depth_at(ray, t_end, arithmetic);
+    const double bound = dz > 0 ? context.depth : 0;
+    if (dz > 0 ? z_end > bound : z_end < bound) {
+        // A ray may start a hair outside, from a polygon on the cube's face: it leaves at once, not in the
+        // past.
+        const double t_leave = std::max(arithmetic.product(arithmetic.formats().distance,
+                                                           bound - ray.position.z, arithmetic.reciprocal(dz)),
+                                        0.0);
+        t_end = std::min(t_leave, t_end);
+        visit.event = Visit::Event::leaves_cube;
+        visit.hit.t = t_end;
+    }
+    if (ray.reach <= t_end) {
+        t_end = ray.reach;
+        visit.event = Visit::Event::reaches_source;
+    }
+    const auto hit = nearest_in_cell(store, ray, t_end, context.settings.hit, context.scene.frame.level(),
+                                     arithmetic, &visit.comparisons, runs, run_count);
+    // What lies on the source itself does not hide it.
+    if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach - arithmetic.hair())) {
+        visit.event = Visit::Event::hit;
+        visit.hit = *hit;
+    }
+    return visit;
+}
+
+std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs) {
+    const Comparisons& made = visit.comparisons;
+    const HitTest test = settings.hit;
+    // Every test ends in a division: where on its way the ray meets the plane, or enters the run.
+    const std::uint32_t own = test == HitTest::plane  ? costs.compare_plane
+                              : test == HitTest::mask ? costs.compare_mask
+                              : test == HitTest::edge ? costs.compare_edge
+                                                      : 0;
+    const std::uint32_t run = test == HitTest::depth ? costs.compare_depth : costs.compare_interval;
+    return costs.walk_step + made.runs * run +
+           made.tests * (own + costs.reciprocal(settings.numbers.operators)) + made.edges * costs.per_edge;
+}
+
+Beyond beyond_face(const Context& context, Face face) {
+    const bool work = context.settings.exterior == ExteriorMode::host && context.scene.beyond[face];
+    return work ? Beyond::exterior : Beyond::nothing;
+}
+
+void start_outside(Ray& ray, double t_leave, const Arithmetic& arithmetic) {
+    move_along(ray, t_leave, arithmetic);
+    ray.outside = true;
+}
+
+namespace {
+
+ExteriorRequest request_at_border(const Context& context, const Ray& ray, const Crossing& crossing, int x,
+                                  int y) {
+    ExteriorRequest request;
+    request.direction = context.arithmetic.exact() ? ray.direction : glm::normalize(ray.direction);
+    const bool axial = ray.inverse_x == 0 && ray.inverse_y == 0;
+    if (axial && ray.outside) {
+        // It was only carried to the border: its place is still that of the cell that sent it.
+        request.origin = {ray.home_x + ray.position.x, ray.home_y + ray.position.y, ray.position.z};
+        request.reach = ray.reach;
+        return request;
+    }
+    double t = crossing.t;
+    if (ray.outside) {  // back along the way that it came untested
+        const double face = ray.direction.z > 0 ? context.depth : 0;
+        t = (face - ray.position.z) * (1 / ray.direction.z);
+    }
+    const dvec3 corner{double(x), double(y), 0};
+    request.origin = corner + ray.position + t * ray.direction;
+    request.reach = ray.reach - t;
+    return request;
+}
+
+}  // namespace
+
+ExteriorRequest exterior_request(const Context& context, const Ray& ray, const Crossing& crossing, int x,
+                                 int y) {
+    ExteriorRequest request = request_at_border(context, ray, crossing, x, y);
+    if (is_shadow(ray.kind) && !context.arithmetic.exact()) {
+        request.reach = glm::distance(request.origin, context.scene.sources[ray.child].position);
+    }
+    return request;
+}
+
+dvec3 exterior_answer(const Context& context, const dvec3& intensity) {
+    return context.arithmetic.hold(context.arithmetic.formats().intensity, intensity);
+}
+
+namespace {
+
+/// The field of normals at a point of the cell, not normalised.
+dvec3 normal_at(const Voxel& voxel, const dvec3& local, const Arithmetic& arithmetic) {
+    const NormalField& field = voxel.normal;
+    const dvec2 uv = project({local.x, local.y, local.z - voxel.base}, voxel.drop);
+    if (arithmetic.exact()) return field.at(uv);
+    const Format& word = arithmetic.formats().field;
+    dvec3 normal;
+    for (int i = 0; i < 3; ++i) {
+        normal[i] = arithmetic.mac(word, field.base[i], uv.x, field.du[i], uv.y, field.dv[i]);
+    }
+    return normal;
+}
+
+}  // namespace
+
+HitSetup set_up_hit(const Context& context, const CellStore& store, const Ray& ray, const CellHit& hit, int x,
+                    int y) {
+    if (context.traffic) return context.traffic->set_up_hit(context, store, ray, hit, x, y);
+    const Voxel& voxel = store.voxels[hit.voxel];
+    const Material& material = context.objects[voxel.object];
+    const Arithmetic& arithmetic = context.arithmetic;
+    HitSetup setup;
+    setup.local = point_at(ray, hit.t, arithmetic);
+    setup.point = shade_point(setup.local + dvec3(x, y, 0), ray.direction,
+                              normal_at(voxel, setup.local, arithmetic), voxel.plane.n, arithmetic);
+    for (std::size_t s = 0; s < context.sources.size(); ++s) {
+        if (view_source(setup.point, context.sources[s], arithmetic).faces()) {
+            setup.facing |= std::uint64_t(1) << s;
+        }
+    }
+    const auto worth = [&](double share) {
+        return share > 0 && ray.generation < context.settings.max_depth &&
+               ray.weight * share >= context.settings.min_weight;
+    };
+    if (worth(mirror_share(material))) {
+        setup.reflects = true;
+        setup.reflected = reflect_direction(setup.point, arithmetic);
+    }
+    if (worth(transmit_share(material))) {
+        setup.refracts = true;
+        setup.refracted = transmit_direction(setup.point, material.ior, arithmetic);
+    }
+    return setup;
+}
+
+bool may_wait(const Context& context, const Ray& ray, std::uint32_t object) {
+    if (context.settings.shadows != Shadows::precast && !context.sources.empty()) return true;
+    const Material& material = context.objects[object];
+    return ray.generation < context.settings.max_depth &&
+           (mirror_share(material) > 0 || transmit_share(material) > 0);
+}
+
+int waiting_generations(const Context& context) {
+    const bool shadows = context.settings.shadows != Shadows::precast && !context.sources.empty();
+    return context.settings.max_depth + (shadows ? 1 : 0);
+}
+
+Ray primary_ray(const Context& context, int x, int y) {
+    const Frame& frame = context.scene.frame;
+    Ray ray;
+    ray.id = (std::uint64_t(y) * std::uint64_t(frame.width) + std::uint64_t(x)) << 32;
+    ray.home_x = std::uint16_t(x);
+    ray.home_y = std::uint16_t(y);
+    if (context.traffic) {
+        context.traffic->start_primary(ray, context, x, y);
+        return ray;
+    }
+    ray.position = {0.5, 0.5, 0};
+    const Arithmetic& arithmetic = context.arithmetic;
+    const dvec3 direction = arithmetic.exact() || frame.viewer_at_infinity
+                                ? frame.primary_ray(x + 0.5, y + 0.5).direction
+                                : arithmetic.normalise(dvec3(x + 0.5, y + 0.5, 0) - context.eye);
+    set_direction(ray, direction, arithmetic);
+    return ray;
+}
+
+Ray reflected_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
+                  const HitSetup& setup, int x, int y) {
+    const Material& material = context.objects[store.voxels[hit.voxel].object];
+    return secondary_ray(context, store, parent, hit, setup, RayKind::reflected, setup.reflected,
+                         mirror_share(material), x, y);
+}
+
+Ray refracted_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
+                  const HitSetup& setup, int x, int y) {
+    const Material& material = context.objects[store.voxels[hit.voxel].object];
+    return secondary_ray(context, store, parent, hit, setup, RayKind::refracted, setup.refracted,
+                         transmit_share(material), x, y);
+}
+
+Ray shadow_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
+               const HitSetup& setup, std::size_t source, int x, int y) {
+    Ray ray = child_of(parent, RayKind::shadow, unsigned(source), x, y);
+    if (context.traffic) {
+        context.traffic->start_child(ray, parent, context, store, setup);
+        return ray;
+    }
+    const SourceView view = view_source(setup.point, context.sources[source], context.arithmetic);
+    set_direction(ray, view.direction, context.arithmetic);
+    ray.reach = context.arithmetic.hold_reach(view.distance);
+    leave_surface(ray, context, setup.local, store.voxels[hit.voxel]);
+    return ray;
+}
+
+Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32_t voxel, std::size_t source,
+                     RayKind kind, int x, int y) {
+    Ray parent;
+    parent.id =
+        (std::uint64_t(y) * std::uint64_t(context.scene.frame.width) + std::uint64_t(x)) << 32 | voxel;
+    Ray ray = child_of(parent, kind, unsigned(source), x, y);
+    ray.slot = voxel;
+    const Arithmetic& arithmetic = context.arithmetic;
+    const dvec3 local = store.voxels[voxel].point;
+    const dvec3 way = context.sources[source].position - (local + dvec3(x, y, 0));
+    dvec3 direction{0, 0, 1};
+    double distance = 0;
+    if (way != dvec3(0)) direction = arithmetic.normalise(way, distance);
+    ray.reach = arithmetic.hold_reach(distance);
+    set_direction(ray, direction, arithmetic);
+    leave_surface(ray, context, local, store.voxels[voxel]);
+    return ray;
+}
+
+dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t object, std::uint64_t lit,
+                const dvec3& reflected, const dvec3& refracted) {
+    const Material& material = context.objects[object];
+    const dvec3 local = context.traffic
+                            ? context.traffic->local_intensity(setup, lit & setup.facing)
+                            : local_intensity(setup.point, material, context.sources.data(),
+                                              context.sources.size(), lit & setup.facing, context.arithmetic);
+    return combine_intensity(local, material, reflected, refracted, context.arithmetic);
+}
+
+std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs) {
+    const OperatorSettings& operators = context.settings.numbers.operators;
+    const std::uint32_t root = costs.root(operators);
+    const std::uint32_t start = 2 * costs.reciprocal(operators);  // the reciprocals that a ray carries
+    std::uint32_t cycles = costs.shade_setup;
+    if (context.settings.normals == Normals::linear) cycles += costs.normal_linear + root;
+    cycles += std::uint32_t(context.sources.size()) * (costs.source_view + root);
+    if (context.settings.shadows == Shadows::per_hit) {
+        cycles += std::uint32_t(std::bitset<64>(setup.facing).count()) * start;
+    }
+    if (setup.reflects) cycles += costs.reflect + root + start;
+    if (setup.refracts) cycles += costs.refract + costs.reciprocal(operators) + 2 * root + start;
+    return cycles;
+}
+
+std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, const CostTable& costs) {
+    const std::uint32_t each = costs.per_lit_source + costs.power(context.settings.numbers.operators);
+    return costs.local_intensity + std::uint32_t(std::bitset<64>(lit).count()) * each;
+}
+
+Pixel display_cell(const Context& context, const CellStore& store, int x, int y) {
+    Pixel pixel;
+    Ray ray;
+    ray.position = {0.5, 0.5, 0};
+    ray.fresh = false;
+    set_direction(ray, {0, 0, 1}, context.arithmetic);
+    const Frame& frame = context.scene.frame;
+    const auto hit =
+        nearest_in_cell(store, ray, context.depth, context.settings.hit, frame.level(), context.arithmetic);
+    if (!hit) {
+        record_background(pixel);
+        pixel.colour = context.background;
+        return pixel;
+    }
+    const Voxel& voxel = store.voxels[hit->voxel];
+    const HitSetup setup = set_up_hit(context, store, ray, *hit, x, y);
+    record_first_hit(pixel, setup, voxel.polygon);
+    pixel.colour = context.settings.display == Display::gouraud
+                       ? store.intensities[hit->voxel]
+                       : shade_hit(context, setup, voxel.object, ~std::uint64_t(0), dvec3(0), dvec3(0));
+    return pixel;
+}
+
+void record_first_hit(Pixel& pixel, const HitSetup& setup, std::uint32_t polygon) {
+    pixel.depth = setup.point.position.z;
+    pixel.normal = setup.point.normal;
+    pixel.polygon = polygon;
+}
+
+void record_background(Pixel& pixel) {
+    pixel.depth = infinity;
+    pixel.normal = dvec3(0);
+    pixel.polygon = no_polygon;
+}
+
+}  // namespace raycell

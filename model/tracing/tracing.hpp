@@ -1,0 +1,143 @@
+// What a cell decides about a ray: pure functions, shared by the untimed machine and the timed cells.
+#pragma once
+
+#include "model/picture/picture.hpp"
+#include "model/shading/shading.hpp"
+#include "model/tracing/intersect.hpp"
+
+namespace raycell {
+
+class SyntheticTraffic;
+
+/// What every cell knows once the scene is loaded: objects' features, sources, background and viewer as the
+/// machine's arithmetic holds them. `scene` keeps them as they are, for the exterior.
+struct Context {
+    const CellScene& scene;
+    const PictureSettings& settings;
+    Arithmetic arithmetic;
+    std::vector<Material> objects;
+    std::vector<Source> sources;
+    dvec3 background{0, 0, 0};
+    dvec3 eye{0, 0, 0};
+    double depth = 1;                           ///< of the cube, cell widths
+    double normal_offset = 0;                   ///< cells
+    const SyntheticTraffic* traffic = nullptr;  ///< set: what rays meet is drawn, not loaded (traffic.hpp)
+
+    /// All must outlive it. Throws std::invalid_argument for numbers that Arithmetic refuses, and for
+    /// settings that synthetic traffic has nothing for: see traffic_picture().
+    Context(const CellScene& placed, const PictureSettings& picture_settings,
+            const SyntheticTraffic* synthetic = nullptr);
+};
+
+/// Features as the cells latch them.
+Material hold(const Material& material, const Arithmetic& arithmetic);
+
+/// What becomes of a ray in a cell.
+struct Visit {
+    enum class Event : std::uint8_t {
+        hit,            ///< meets a voxel
+        forward,        ///< goes on over `crossing`, perhaps over the array's border
+        leaves_cube,    ///< leaves through the front or the back while in this cell
+        reaches_source  ///< a shadow ray that nothing blocked
+    };
+    Crossing crossing;
+    CellHit hit;  ///< leaves_cube: its distance is that to the front or the back
+    Comparisons comparisons;
+    Event event = Event::forward;
+};
+/// `runs`: see nearest_in_cell().
+Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
+                 const DepthRun* runs = nullptr, std::uint32_t run_count = 0);
+
+/// Cycles that the traversal unit needs for a visit.
+std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs);
+
+/// What is behind a face that a ray leaves through: nothing (background, lit) or work for the exterior.
+enum class Beyond { nothing, exterior };
+Beyond beyond_face(const Context& context, Face face);
+inline Face face_of(Side side) {
+    return side == Side::east    ? face_right
+           : side == Side::west  ? face_left
+           : side == Side::south ? face_bottom
+                                 : face_top;
+}
+inline Face face_of_depth(const Ray& ray) { return ray.direction.z > 0 ? face_back : face_front; }
+
+/// Puts a ray that leaves through the front or the back on its way to the border.
+void start_outside(Ray& ray, double t_leave, const Arithmetic& arithmetic);
+
+/// A ray handed to the exterior: from where it left the cube, in the array's coordinates.
+struct ExteriorRequest {
+    dvec3 origin{0, 0, 0};
+    dvec3 direction{0, 0, 1};
+    double reach = 0;
+};
+/// `ray` stands on the border of cell (x, y), before crossing it. In fixed arithmetic the exterior, which is
+/// exact, makes the direction unit again and takes the distance to a source from the source.
+ExteriorRequest exterior_request(const Context& context, const Ray& ray, const Crossing& crossing, int x,
+                                 int y);
+/// An intensity from the exterior, as a message carries it.
+dvec3 exterior_answer(const Context& context, const dvec3& intensity);
+
+/// Classical ray tracing outside the cube (paper, section 3.3, second solution).
+class ExteriorTracer {
+  public:
+    virtual ~ExteriorTracer() = default;
+    /// A primary ray's first hit is recorded in `pixel`.
+    virtual dvec3 radiance(const ExteriorRequest& request, const Ray& ray, Pixel* pixel) const = 0;
+    virtual bool blocked(const ExteriorRequest& request, const Ray& ray) const = 0;
+};
+
+/// A hit as the shading unit sees it: the point, and the rays worth sending from it.
+struct HitSetup {
+    ShadePoint point;
+    dvec3 local{0, 0, 0};      ///< hit point relative to the cell
+    std::uint64_t facing = 0;  ///< bit per source that the normal faces
+    bool reflects = false;
+    bool refracts = false;  ///< has a child for the share T, mirrored on total internal reflection
+    dvec3 reflected{0, 0, 0};
+    dvec3 refracted{0, 0, 0};
+};
+HitSetup set_up_hit(const Context& context, const CellStore& store, const Ray& ray, const CellHit& hit, int x,
+                    int y);
+
+/// Whether a hit of this ray may have to wait for answers: only then does it need a slot of the ray store.
+bool may_wait(const Context& context, const Ray& ray, std::uint32_t object);
+
+/// Generations that may have to wait: the number of slots that `reserved` keeps apart.
+int waiting_generations(const Context& context);
+
+/// Pixel (x, y)'s primary ray.
+Ray primary_ray(const Context& context, int x, int y);
+
+/// Children of a ray that hit: the reflected (child 0), the refracted (child 1), a shadow ray (child =
+/// source).
+Ray reflected_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
+                  const HitSetup& setup, int x, int y);
+Ray refracted_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
+                  const HitSetup& setup, int x, int y);
+Ray shadow_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
+               const HitSetup& setup, std::size_t source, int x, int y);
+
+/// A ray from a voxel's own point to a source (memo, precast); ray.slot is the voxel.
+Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32_t voxel, std::size_t source,
+                     RayKind kind, int x, int y);
+
+/// The intensity of a hit, from the answers to its children.
+dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t object, std::uint64_t lit,
+                const dvec3& reflected, const dvec3& refracted);
+
+/// Cycles of the shading unit.
+std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs);
+std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, const CostTable& costs);
+
+/// The picture after loading: the cell's nearest voxel at its centre along z, no shadows (--stage load).
+Pixel display_cell(const Context& context, const CellStore& store, int x, int y);
+
+/// First-hit data of a pixel, from the primary ray's hit.
+void record_first_hit(Pixel& pixel, const HitSetup& setup, std::uint32_t polygon);
+
+/// A pixel that sees the background.
+void record_background(Pixel& pixel);
+
+}  // namespace raycell

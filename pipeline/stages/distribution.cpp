@@ -1,0 +1,126 @@
+#include "pipeline/stages/distribution.hpp"
+
+#include "cells/channels/split_link.hpp"
+
+namespace raycell {
+namespace {
+
+std::string name_down(int y) { return "distribution.row_" + std::to_string(y) + ".down"; }
+
+}  // namespace
+
+void RowDistributor::take(LoadItem& item, Cycle now) {
+    Environment& env = environment();
+    item_ = &item;
+    passed_on_ = false;
+    const bool last_row = row_ + 1 == env.height();
+    Cycle cycles = env.costs().distribution_pass;
+    if (item.kind == LoadItem::Kind::trapeze) {
+        goes_down_ = !last_row && item.trapeze.reaches_below(row_);
+        const bool gouraud = env.context.settings.display == Display::gouraud;
+        if (row_ >= item.trapeze.first_row(env.height())) {
+            cycles = env.costs().distribution_span;
+            auto span = cut_span(item.trapeze, row_, env.width(), env.context.arithmetic,
+                                 gouraud ? &item.intensities : nullptr);
+            if (span) {
+                to_row_ = env.pools.loads.take();
+                to_row_->kind = LoadItem::Kind::span;
+                to_row_->span = *span;
+                ++statistics_.items;
+            }
+        }
+    } else {
+        goes_down_ = !last_row;
+        to_row_ = env.pools.loads.take();
+        to_row_->kind = item.kind;
+        to_row_->object = item.object;
+    }
+    work(now, cycles);
+    ready_ = now + cycles;
+}
+
+Cycle RowDistributor::step(Cycle now) {
+    Environment& env = environment();
+    Cycle retry = never;
+    if (!item_) {
+        const Message message = in->front(0);
+        if (message.kind != Message::Kind::load) return never;
+        take(*message.load, now);
+    }
+    if (now < ready_) return ready_;
+    if (to_row_ && east->can_send(0, retry)) {
+        ++env.counters.loads_sent;
+        east->send(0, Message(to_row_), env.cycles_for(env.load_bits(*to_row_)));
+        to_row_ = nullptr;
+    }
+    if (goes_down_ && down->can_send(0, retry)) {
+        down->send(0, Message(item_), env.cycles_for(env.load_bits(*item_)));
+        goes_down_ = false;
+        passed_on_ = true;
+    }
+    if (to_row_ || goes_down_) return retry;
+    if (!passed_on_) env.pools.loads.give_back(item_);
+    in->pop(0);
+    item_ = nullptr;
+    return now + 1;
+}
+
+Distribution::Distribution(sc_core::sc_module_name name, Environment& environment)
+    : sc_module(name), share_(environment.share) {
+    for (const int y : share_.rows()) {
+        const std::string row_name = "row_" + std::to_string(y);
+        rows_.push_back(std::make_unique<RowDistributor>(row_name.c_str(), environment, y));
+    }
+    for (const Band& band : share_.bands()) {
+        for (int y = band.first; y < band.end; ++y) {
+            if (y > 0) join_above(environment, y, y == band.first ? band.above : nullptr);
+        }
+        if (band.below) join_below(environment, band.end - 1, *band.below);
+    }
+}
+
+/// The way into row y, half of it where the row above is another rank's.
+void Distribution::join_above(Environment& environment, int y, SplitLinks* above) {
+    links_.push_back(std::make_unique<Link>(environment.scheduler, 1, environment.machine.buffer_depth));
+    Link& link = *links_.back();
+    link.set_name(name_down(y - 1));
+    link.connect_sink(row(y));
+    row(y).in.bind(link);
+    if (above) {
+        above->add_sink(link);
+        return;
+    }
+    environment.stall(link, link.name());
+    link.connect_source(row(y - 1));
+    row(y - 1).down.bind(link);
+}
+
+/// The way out of row y to another rank's.
+void Distribution::join_below(Environment& environment, int y, SplitLinks& below) {
+    Link& link = below.make_source(environment.scheduler, 1, environment.machine.buffer_depth);
+    link.set_name(name_down(y));
+    environment.stall(link, link.name());
+    link.connect_source(row(y));
+    row(y).down.bind(link);
+}
+
+StageStatistics Distribution::statistics() const {
+    StageStatistics sum;
+    for (const auto& row : rows_) {
+        sum.items += row->statistics().items;
+        sum.busy_cycles += row->statistics().busy_cycles;
+    }
+    return sum;
+}
+
+std::size_t Distribution::holds() const {
+    std::size_t sum = 0;
+    for (const auto& link : links_) sum += std::size_t(link->occupancy(0));
+    for (const auto& row : rows_) {
+        sum += row->holds();
+        sum -= row->works_on_what_it_passed_on() ? 1 : 0;
+    }
+    return sum;
+}
+
+}  // namespace raycell

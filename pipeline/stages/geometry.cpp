@@ -1,0 +1,62 @@
+#include "pipeline/stages/geometry.hpp"
+
+#include "model/loading/loading.hpp"
+
+namespace raycell {
+
+LoadItem* Geometry::next_item() {
+    Environment& env = environment();
+    const CellScene& scene = env.context.scene;
+    const auto make = [&](LoadItem::Kind kind) {
+        LoadItem* item = env.pools.loads.take();
+        item->kind = kind;
+        return item;
+    };
+    work_ = 1;
+    if (!setup_sent_) {
+        setup_sent_ = true;
+        return make(LoadItem::Kind::setup);
+    }
+    while (polygon_ < scene.polygons.size()) {
+        const Polygon& next = scene.polygons[polygon_];
+        Polygon polygon = next;
+        if (!clip_to_cube(polygon, scene.frame.cube(), environment().context.arithmetic)) {
+            ++polygon_;
+            work_ += env.costs().geometry_polygon;  // found to lie outside: work all the same
+            continue;
+        }
+        if (std::int64_t(next.object) != object_) {
+            object_ = next.object;
+            LoadItem* item = make(LoadItem::Kind::features);
+            item->object = next.object;
+            return item;
+        }
+        ++polygon_;
+        work_ += env.costs().geometry_polygon;
+        ++statistics_.items;
+        LoadItem* item = make(LoadItem::Kind::polygon);
+        item->polygon = std::move(polygon);
+        return item;
+    }
+    if (end_sent_) return nullptr;
+    end_sent_ = true;
+    return make(LoadItem::Kind::end_of_scene);
+}
+
+Cycle Geometry::step(Cycle now) {
+    Environment& env = environment();
+    if (!item_) {
+        item_ = next_item();
+        if (!item_) return never;
+        ready_ = now + work_;
+        work(now, work_);
+    }
+    if (now < ready_) return ready_;
+    Cycle retry = never;
+    if (!out->can_send(0, retry)) return retry;
+    out->send(0, Message(item_), env.cycles_for(env.load_bits(*item_)));
+    item_ = nullptr;
+    return now + 1;
+}
+
+}  // namespace raycell

@@ -1,0 +1,33 @@
+// Stage 2, precomputation: polygons into trapezes, with what the display needs at their corners (paper,
+// section 2.2).
+#pragma once
+
+#include <vector>
+
+#include "pipeline/stages/stage.hpp"
+
+namespace raycell {
+
+class Precomputation : public Stage {
+  public:
+    Precomputation(sc_core::sc_module_name name, Environment& environment) : Stage(name, environment) {}
+    sc_core::sc_port<LinkIn> in;
+    sc_core::sc_port<LinkOut> out;
+
+    /// Load messages in no link.
+    std::size_t holds() const { return item_ ? 1 : 0; }
+    /// Its part of the wait-for graph.
+    void add_places(WaitMap& map) const;
+    void add_waits(WaitMap& map) const;
+
+  private:
+    Cycle step(Cycle now) override;
+    void take(LoadItem& item);
+
+    std::vector<Trapeze> trapezes_;  ///< of the polygon at work
+    std::size_t next_ = 0;
+    LoadItem* item_ = nullptr;  ///< ready to go out
+    Cycle ready_ = 0;
+};
+
+}  // namespace raycell

@@ -1,0 +1,61 @@
+// What the stages before the array have in common: a process woken by the scheduler, a throughput, a
+// utilisation.
+#pragma once
+
+#include <systemc>
+
+#include "cells/channels/link.hpp"
+#include "cells/deadlock/wait_map.hpp"
+#include "cells/environment.hpp"
+
+namespace raycell {
+
+struct StageStatistics {
+    std::uint64_t items = 0;        ///< polygons, trapezes or spans put out
+    std::uint64_t busy_cycles = 0;  ///< at work; waiting for room downstream not included
+};
+
+class Stage : public sc_core::sc_module, public Client {
+  public:
+    SC_HAS_PROCESS(Stage);
+    Stage(sc_core::sc_module_name name, Environment& environment)
+        : sc_module(name), environment_(environment) {
+        SC_METHOD(run);
+        sensitive << wake_;
+        dont_initialize();
+    }
+    void activate() override { wake_.notify(); }
+    /// Up to now: of an operation that is still going on, the cycles that are over.
+    StageStatistics statistics() const {
+        StageStatistics so_far = statistics_;
+        const Cycle now = environment_.scheduler.now();
+        if (busy_until_ > now) so_far.busy_cycles -= busy_until_ - now;
+        return so_far;
+    }
+
+    /// As another stage's were, at whose end this one starts.
+    void restore(const StageStatistics& statistics) { statistics_ = statistics; }
+
+  protected:
+    /// One cycle; returns the next one in which the stage wants to run of itself.
+    virtual Cycle step(Cycle now) = 0;
+    Environment& environment() { return environment_; }
+    const Environment& environment() const { return environment_; }
+    /// An operation begins.
+    void work(Cycle now, Cycle cycles) {
+        statistics_.busy_cycles += cycles;
+        busy_until_ = now + cycles;
+    }
+    StageStatistics statistics_;
+
+  private:
+    void run() {
+        const Cycle next = step(environment_.scheduler.now());
+        if (next != never) environment_.scheduler.wake(*this, next);
+    }
+    Environment& environment_;
+    Cycle busy_until_ = 0;
+    sc_core::sc_event wake_;
+};
+
+}  // namespace raycell

@@ -1,0 +1,141 @@
+#include "testbench/common/deadlock_dump.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <thread>
+
+#include "testbench/common/configuration.hpp"
+#include "testbench/common/interruptible.hpp"
+#include "testbench/common/report_json.hpp"
+#include "testbench/raycell/commands.hpp"
+
+extern char** environ;
+
+namespace raycell {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder beside the results, gone at the end.
+class ScratchFolder {
+  public:
+    explicit ScratchFolder(const std::string& prefix) {
+        std::string name = prefix + ".XXXXXX";
+        if (!mkdtemp(name.data())) fail("make a folder beside", prefix, reason_of(errno));
+        path_ = name;
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+std::string read_text(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+/// Runs this program with these words; its standard error goes to a file. Returns its exit code, -1 if it was
+/// ended by a signal. Throws Interrupted.
+int run_again(std::vector<std::string> words, const std::string& errors) {
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 2, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    pid_t child = 0;
+    const int error = posix_spawn(&child, "/proc/self/exe", &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0) fail("run", "/proc/self/exe", reason_of(error));
+    int status = 0;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        if (*noted_signal()) kill(child, SIGKILL);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    stop_if_interrupted();
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// The configuration of the second run, whose results go to `prefix`.
+nlohmann::ordered_json probing(nlohmann::ordered_json config, const RenderOptions& options,
+                               const DeadlockedCells& where, const std::string& prefix,
+                               const std::string& array) {
+    nlohmann::ordered_json cells = nlohmann::ordered_json::array();
+    for (const auto& [x, y] : where.cells) cells.push_back(std::to_string(x) + "," + std::to_string(y));
+    const Cycle last = Cycle(options.probes.last);
+    config["probe"] = cells;
+    config["window"] = std::to_string(where.formed > last ? where.formed - last : 0) + ":";
+    config["vcd-on-deadlock"] = false;
+    config["truth"] = false;
+    config["quiet"] = true;
+    config["output"] = prefix;
+    if (!array.empty()) {  // what the first run kept, the second needs not load
+        config["load-array"] = array;
+        config["save-array"] = "";
+    }
+    return config;
+}
+
+/// What the second run had to say about the dump's size, under the dump's final name.
+void pass_on_warnings(const std::string& said, const std::string& prefix) {
+    std::istringstream lines(said);
+    for (std::string line; std::getline(lines, line);) {
+        const auto at = line.find("warning: the dump");
+        if (at != std::string::npos) std::cerr << prefix << ".vcd: " << line.substr(at) << '\n';
+    }
+}
+
+}  // namespace
+
+DeadlockedCells deadlocked_cells(const RunResult& result, Machine& machine) {
+    constexpr std::size_t most = 64;
+    DeadlockedCells where;
+    where.cells = result.knot_cells.empty() ? machine.blocked_cells(most) : result.knot_cells;
+    where.formed = std::min(result.knot_formed, machine.environment().scheduler.now());
+    return where;
+}
+
+void dump_deadlock(const RenderOptions& options, nlohmann::ordered_json config, const DeadlockedCells& where,
+                   std::uint64_t schedule_hash, OutputSet& outputs) {
+    const ScratchFolder folder(options.prefix);
+    const std::string prefix = (folder.path() / fs::path(options.prefix).filename()).string();
+    const std::string file = (folder.path() / "configuration").string();
+    const std::string errors = (folder.path() / "errors").string();
+    const std::string array = options.save_array.empty() ? "" : outputs.partial(options.save_array);
+    write_text(file, to_toml(probing(std::move(config), options, where, prefix, array)));
+    const int code = run_again({"raycell", "render", "--config", file}, errors);
+    const std::string said = read_text(errors);
+    if (code != exit_stuck) {
+        throw std::runtime_error("--vcd-on-deadlock: the second run ended with exit code " +
+                                 std::to_string(code) + ": " + said);
+    }
+    pass_on_warnings(said, options.prefix);
+    const auto report = nlohmann::ordered_json::parse(read_text(prefix + ".json"));
+    if (report["hash"]["schedule"] != hex(schedule_hash)) {
+        throw std::logic_error("internal error: the second run is not the first: schedule " +
+                               report["hash"]["schedule"].get<std::string>() + ", expected " +
+                               hex(schedule_hash));
+    }
+    for (const char* suffix : {".vcd", ".gtkw"}) outputs.adopt(suffix, prefix + suffix);
+}
+
+}  // namespace raycell

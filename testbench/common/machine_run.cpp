@@ -1,0 +1,130 @@
+#include "testbench/common/machine_run.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+
+#include "testbench/common/cell_ranges.hpp"
+#include "testbench/common/entry.hpp"
+#include "testbench/common/signals.hpp"
+#include "testbench/common/time_estimate.hpp"
+#include "testbench/raycell/commands.hpp"
+
+namespace raycell {
+namespace {
+
+/// What a process can still get, the page cache included; free pages alone where the system doesn't say.
+double available_bytes() {
+    std::ifstream file("/proc/meminfo");
+    std::string key;
+    double kilobytes = 0;
+    std::string unit;
+    while (file >> key >> kilobytes >> unit) {
+        if (key == "MemAvailable:") return kilobytes * 1024;
+    }
+    return double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+}
+
+/// What grows with the array before anything is loaded: cells with their links, and the picture, which the
+/// result has once more. Of several ranks, what all on this machine need: each has a picture beside its
+/// cells, and rank 0 puts them together.
+double needed_bytes(const RenderOptions& options) {
+    constexpr double untimed_cell = 200;
+    const double cells = double(options.picture.width) * options.picture.height;
+    if (options.engine == Engine::untimed) return cells * (untimed_cell + sizeof(Pixel));
+    const LaunchedRanks ranks = launched_ranks();
+    const double pictures = ranks.count == 1 ? 2 : ranks.on_this_machine + 3;
+    const double share = double(ranks.on_this_machine) / ranks.count;
+    return cells * pictures * sizeof(Pixel) +
+           share * Array::bytes(granularity_of(options), options.picture.width, options.picture.height,
+                                buffer_classes(options.machine.networks));
+}
+
+std::string gigabytes(double bytes) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*f GB", bytes < 10e9 ? 1 : 0, bytes / 1e9);
+    return text;
+}
+
+}  // namespace
+
+void check_memory(const RenderOptions& options) {
+    constexpr double worth_telling = 1e9;
+    const double needed = needed_bytes(options);
+    const double there = available_bytes();
+    if (needed > there) {
+        const bool modules = options.engine == Engine::timed && options.hosts == Hosts::cell;
+        throw UsageError("--cells: " + gigabytes(needed) + " would be needed for so many cells, " +
+                         gigabytes(there) + " are free; expected a smaller array" +
+                         (modules ? ", or --granularity tile" : ""));
+    }
+    if (needed > worth_telling && !options.quiet) {
+        std::cerr << "about " << gigabytes(needed) << " of memory before anything is loaded, "
+                  << gigabytes(there) << " are free\n";
+    }
+}
+
+void check_granularity(const RenderOptions& options) {
+    if (options.detail.empty()) return;
+    if (options.engine == Engine::untimed)
+        throw UsageError("--detail: the untimed engine has no modules; expected --engine timed");
+    if (options.hosts == Hosts::cell)
+        throw UsageError("--detail: every cell is a module already; expected --granularity auto or tile");
+    check_inside("--detail", options.detail, options.picture);
+}
+
+Granularity granularity_of(const RenderOptions& options) {
+    Granularity granularity;
+    granularity.every_cell = options.hosts == Hosts::cell;
+    granularity.detail = options.detail;
+    if (options.hosts == Hosts::automatic) {
+        for (const auto* more : {&options.probes.cells, &options.golden})
+            granularity.detail.insert(granularity.detail.end(), more->begin(), more->end());
+    }
+    return granularity;
+}
+
+void show_progress(const RunProgress& p) { std::cerr << "\r" << progress_line(p) << "\033[K" << std::flush; }
+
+int exit_code(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::completed:
+            return exit_done;
+        case Verdict::deadlock:
+        case Verdict::livelock:
+            return exit_stuck;
+        case Verdict::cycle_limit:
+        case Verdict::capacity:
+            return exit_limit;
+        case Verdict::interrupted:
+            return exit_interrupted;
+    }
+    return exit_usage;
+}
+
+void warn_of(const Bound& bound, const char* program) {
+    if (bound.met()) return;
+    std::cerr << program << ": warning: the run may end in a " << name_of(bound.may) << ": " << bound.advice()
+              << '\n';
+}
+
+void explain(const RunResult& result, const Bound& bound, const char* program) {
+    if (result.verdict == Verdict::completed) return;
+    std::cerr << program << ": verdict " << name_of(result.verdict);
+    if (result.verdict == Verdict::capacity) {
+        std::cerr << ": " << result.storage.overflowed << " voxels did not fit (--voxel-capacity)";
+    }
+    const bool stuck = result.verdict == Verdict::deadlock || result.verdict == Verdict::livelock;
+    if (stuck && !bound.met()) std::cerr << ": " << bound.advice();
+    std::cerr << '\n';
+    constexpr std::size_t shown = 10;
+    for (std::size_t i = 0; i < result.report.size() && i < shown; ++i)
+        std::cerr << "  " << result.report[i] << '\n';
+    if (result.report.size() > shown) {
+        std::cerr << "  ... " << result.report.size() << " in all, see deadlock.report in the JSON\n";
+    }
+}
+
+}  // namespace raycell

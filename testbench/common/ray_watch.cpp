@@ -1,0 +1,259 @@
+#include "testbench/common/ray_watch.hpp"
+
+#include <algorithm>
+#include <ostream>
+#include <sstream>
+
+#include "cells/cell.hpp"
+#include "testbench/common/options.hpp"
+
+namespace raycell {
+namespace {
+
+constexpr const char* side_names[] = {"east", "south", "west", "north"};
+constexpr const char* kind_names[] = {"primary", "reflected", "refracted", "shadow", "memo", "precast"};
+constexpr const char* answer_names[] = {"intensity", "lit", "blocked", "postponed"};
+
+std::string text_of_cell(int x, int y) { return "(" + std::to_string(x) + ", " + std::to_string(y) + ")"; }
+
+std::string padded(std::string text, std::size_t width) {
+    text.resize(std::max(width, text.size()), ' ');
+    return text;
+}
+
+std::string times(std::uint64_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string outcome(Visit::Event event, RayKind kind) {
+    switch (event) {
+        case Visit::Event::hit:
+            return is_shadow(kind) ? "blocked" : "hit";
+        case Visit::Event::forward:
+            return "forward";
+        case Visit::Event::leaves_cube:
+            return "leaves the cube through its front or back";
+        case Visit::Event::reaches_source:
+            return "reaches its source";
+    }
+    return "";
+}
+
+}  // namespace
+
+std::string text_of_ray(std::uint64_t id) {
+    return std::to_string(id >> 32) + "/" + std::to_string(id & 0xffffffffU);
+}
+
+bool parse_ray(const std::string& word, std::uint64_t& id) {
+    const auto slash = word.find('/');
+    std::uint32_t pixel = 0;
+    std::uint32_t part = 0;
+    if (slash == std::string::npos || !parse_number(word.substr(0, slash), pixel) ||
+        !parse_number(word.substr(slash + 1), part)) {
+        return false;
+    }
+    id = std::uint64_t(pixel) << 32 | part;
+    return true;
+}
+
+RayWatch::Life* RayWatch::life_of(std::uint64_t ray) {
+    const auto found = known_.find(ray);
+    return found == known_.end() ? nullptr : &lives_[found->second];
+}
+
+void RayWatch::launched(const Cell& cell, Cycle now, const Ray& ray, const Ray* parent) {
+    if (Life* again = life_of(ray.id)) {
+        again->answering = false;
+        again->ended = never;
+        ++again->open;
+        return;
+    }
+    const auto root = roots_.find(ray.id);
+    const bool by_pixel = ray.kind != RayKind::precast && pixels_.count(ray.id >> 32) > 0;
+    const Life* ancestor = parent ? life_of(parent->id) : nullptr;
+    if (root != roots_.end()) root->second = true;
+    if (root == roots_.end() && !by_pixel && !ancestor) return;
+    Life life;
+    life.id = ray.id;
+    life.kind = ray.kind;
+    life.generation = ray.generation;
+    life.depth = ancestor ? ancestor->depth + 1 : 0;
+    life.x = cell.x();
+    life.y = cell.y();
+    life.launched = now;
+    known_.emplace(ray.id, lives_.size());
+    lives_.push_back(life);
+}
+
+std::string RayWatch::what_happened(const Cell& cell, CellEvent event, std::uint32_t detail,
+                                    Life& life) const {
+    const std::string slot = "slot " + std::to_string(detail);
+    switch (event) {
+        case CellEvent::launch:
+            return life.postponed > 0 ? "launched again, postponed " + times(life.postponed, "time")
+                                      : std::string("launched: ") + kind_names[int(life.kind)] +
+                                            ", generation " + std::to_string(life.generation);
+        case CellEvent::test:
+            return "test begins: " + outcome(Visit::Event(detail), life.kind);
+        case CellEvent::send: {
+            const auto side = Side(detail >> 8);
+            const int x = cell.x() + step_x(side);
+            const int y = cell.y() + step_y(side);
+            const bool leaves = x < 0 || x >= width_ || y < 0 || y >= height_;
+            return std::string(life.answering ? "answer hops " : "hops ") + side_names[int(side)] +
+                   ", class " + class_name(networks_, int(detail & 0xff)) +
+                   (leaves ? ", to the exterior" : "");
+        }
+        case CellEvent::accept:
+            return "accepted into " + slot;
+        case CellEvent::direct:
+            return "into the shading unit, waits for no answer";
+        case CellEvent::shade:
+            return slot +
+                   (cell.ray_store()[detail].state == Slot::State::to_answer ? " is shaded" : " is set up");
+        case CellEvent::answer:
+            if (Answer::Kind(detail) == Answer::Kind::postponed)
+                return "no slot: destroyed, notice to parent";
+            return std::string("ends, answered: ") + answer_names[detail];
+        case CellEvent::deliver:
+            if (Answer::Kind(detail) == Answer::Kind::postponed) return "notice is home: postponed";
+            return std::string("answer is home: ") + answer_names[detail];
+        case CellEvent::silent:
+            return "reaches its source, ends without an answer";
+        case CellEvent::load:
+        case CellEvent::postpone:  // the answer that says so has told it
+            break;
+    }
+    return "";
+}
+
+void RayWatch::cell_event(const Cell& cell, Cycle now, CellEvent event, std::uint64_t ray,
+                          std::uint32_t detail) {
+    Life* life = life_of(ray);
+    if (!life || event == CellEvent::load) return;
+    if (event == CellEvent::answer) life->answering = true;
+    if (event == CellEvent::send) ++(life->answering ? life->answer_hops : life->ray_hops);
+    if (event == CellEvent::silent) life->ended = now;
+    if (event == CellEvent::deliver) {
+        const bool postponed = Answer::Kind(detail) == Answer::Kind::postponed;
+        life->postponed += postponed;
+        if (--life->open == 0 && !postponed) life->ended = now;
+    }
+    const std::string what = what_happened(cell, event, detail, *life);
+    if (!what.empty()) tell(index(cell.x(), cell.y()), cell.x(), cell.y(), now, *life, what);
+}
+
+void RayWatch::stalled(const Cell& cell, Cycle now, std::uint64_t ray, Stall cause, Cycle cycles) {
+    Life* life = life_of(ray);
+    if (!life) return;
+    life->waited[std::size_t(cause)] += cycles;
+    const std::string what =
+        "waited " + times(cycles, "cycle") + " (" + stall_names[std::size_t(cause)] + ")";
+    const std::size_t at = index(cell.x(), cell.y());
+    if (!lines_.empty() && cycle_ == now && lines_.back().cell == at && lines_.back().ray == ray) {
+        lines_.back().text += "; " + what;  // the event that ended the waiting
+    } else {
+        tell(at, cell.x(), cell.y(), now, *life, what);
+    }
+}
+
+void RayWatch::exterior_answered(int x, int y, Cycle now, const Answer& answer) {
+    Life* life = life_of(answer.id);
+    if (!life) return;
+    life->answering = true;
+    ++life->answer_hops;
+    const std::size_t after_all_cells = std::size_t(width_) * std::size_t(height_);
+    tell(after_all_cells, x, y, now, *life,
+         std::string("answer from the exterior hops in: ") + answer_names[int(answer.kind)]);
+}
+
+void RayWatch::tell(std::size_t cell, int x, int y, Cycle now, const Life& life, const std::string& what) {
+    if (now != cycle_) flush();
+    cycle_ = now;
+    std::string cycle = std::to_string(now);
+    cycle.insert(0, cycle.size() < 9 ? 9 - cycle.size() : 0, ' ');
+    lines_.push_back({cell, life.id,
+                      cycle + "  " + padded(text_of_cell(x, y), 12) +
+                          std::string(std::size_t(2 * life.depth), ' ') + text_of_ray(life.id) + "  " +
+                          what});
+}
+
+void RayWatch::flush() {
+    std::stable_sort(lines_.begin(), lines_.end(),
+                     [](const Line& a, const Line& b) { return a.cell < b.cell; });
+    for (const Line& line : lines_) out_ << line.text << '\n';
+    lines_.clear();
+}
+
+void RayWatch::summarise(const Life& life, Cycle now) {
+    const bool ended = life.ended != never;
+    const Cycle end = ended ? life.ended : now;
+    Cycle waited = 0;
+    std::string causes;
+    for (std::size_t cause = 1; cause <= stall_causes; ++cause) {
+        waited += life.waited[cause];
+        if (life.waited[cause] == 0) continue;
+        causes += (causes.empty() ? " (" : ", ") + std::string(stall_names[cause]) + " " +
+                  std::to_string(life.waited[cause]);
+    }
+    out_ << "ray " << text_of_ray(life.id) << ": " << kind_names[int(life.kind)] << ", generation "
+         << life.generation << ", from cell " << text_of_cell(life.x, life.y) << ", cycles " << life.launched
+         << " to " << end << (ended ? "" : " (not home)") << ", " << end - life.launched << " cycles, hops "
+         << life.ray_hops << " + " << life.answer_hops << " of answers, waited " << waited << causes
+         << (causes.empty() ? "" : ")");
+    if (life.postponed > 0) out_ << ", postponed " << times(life.postponed, "time");
+    out_ << '\n';
+}
+
+void RayWatch::finish(Cycle now) {
+    flush();
+    std::sort(lives_.begin(), lives_.end(), [this](const Life& a, const Life& b) {
+        return std::make_tuple(a.launched, index(a.x, a.y), a.id) <
+               std::make_tuple(b.launched, index(b.x, b.y), b.id);
+    });
+    std::uint64_t hops = 0;
+    for (const Life& life : lives_) {
+        summarise(life, now);
+        hops += life.ray_hops + life.answer_hops;
+    }
+    for (const auto& [id, came] : roots_) {
+        if (!came) out_ << "ray " << text_of_ray(id) << " was never launched\n";
+    }
+    out_ << "watched: " << times(lives_.size(), "ray") << ", " << times(hops, "hop") << '\n';
+}
+
+std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& out) {
+    if (options.watch_rays.empty() && options.watch_pixels.empty()) return nullptr;
+    const char* name = options.watch_rays.empty() ? "--watch-pixel" : "--watch-ray";
+    const PictureSettings& picture = options.picture;
+    if (options.engine != Engine::timed) {
+        throw UsageError(std::string(name) + ": only the timed engine has cycles; expected --engine timed");
+    }
+    if (picture.stage != RunStage::trace) {
+        throw UsageError(std::string(name) + ": no ray is traced; expected --stage trace");
+    }
+    const auto pixels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
+    auto watch = std::make_unique<RayWatch>(out, options.machine.networks, picture.width, picture.height);
+    for (const std::uint64_t id : options.watch_rays) {
+        if (id >> 32 >= pixels) {
+            throw UsageError("--watch-ray: there is no pixel " + std::to_string(id >> 32) +
+                             "; expected PIXEL from 0 to " + std::to_string(pixels - 1));
+        }
+        watch->watch_ray(id);
+    }
+    for (const CellRange& range : options.watch_pixels) {
+        if (range.x1 >= picture.width || range.y1 >= picture.height) {
+            throw UsageError("--watch-pixel: there is no pixel (" + std::to_string(range.x1) + ", " +
+                             std::to_string(range.y1) + "); expected X below " +
+                             std::to_string(picture.width) + " and Y below " +
+                             std::to_string(picture.height));
+        }
+        for (int y = range.y0; y <= range.y1; ++y) {
+            for (int x = range.x0; x <= range.x1; ++x) watch->watch_pixel(x, y);
+        }
+    }
+    return watch;
+}
+
+}  // namespace raycell

@@ -1,0 +1,95 @@
+// The life of chosen rays and their children, as text: --watch-ray, --watch-pixel.
+#pragma once
+
+#include <array>
+#include <iosfwd>
+#include <map>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "cells/channels/observer.hpp"
+#include "model/settings/settings.hpp"
+
+namespace raycell {
+
+/// Writes one line per event: cycle, cell, ray, what happened, indented by generation. Events come by cycle,
+/// then by cell, row by row (the exterior after all of them), then in the order in which the cell did them,
+/// so the text does not depend on the order in which cells run. What a ray or its answer waited stands in
+/// the line of the event that ended it, or in one of its own.
+class RayWatch : public CellObserver {
+  public:
+    /// `width`: of the array, cells.
+    RayWatch(std::ostream& out, Networks networks, int width, int height)
+        : out_(out), networks_(networks), width_(width), height_(height) {}
+
+    /// A ray and its descendants.
+    void watch_ray(std::uint64_t id) { roots_.emplace(id, false); }
+    /// All rays of pixel (x, y)'s tree; verdicts cast before tracing do not belong to a tree.
+    void watch_pixel(int x, int y) { pixels_.insert(index(x, y)); }
+    /// At the end of the run: the last cycle's events, and a line per ray. `now`: the run's last cycle.
+    void finish(Cycle now);
+
+    void cell_event(const Cell& cell, Cycle now, CellEvent event, std::uint64_t ray,
+                    std::uint32_t detail) override;
+    void launched(const Cell& cell, Cycle now, const Ray& ray, const Ray* parent) override;
+    void stalled(const Cell& cell, Cycle now, std::uint64_t ray, Stall cause, Cycle cycles) override;
+    void exterior_answered(int x, int y, Cycle now, const Answer& answer) override;
+
+  private:
+    /// What is known of a watched ray.
+    struct Life {
+        std::uint64_t id = 0;
+        RayKind kind = RayKind::primary;
+        int generation = 0;
+        int depth = 0;  ///< of the indentation
+        int x = 0;      ///< home
+        int y = 0;
+        Cycle launched = 0;  ///< the first time
+        Cycle ended = never;
+        std::uint64_t ray_hops = 0;
+        std::uint64_t answer_hops = 0;
+        std::uint64_t postponed = 0;
+        /// On their way: memo's rays of one pixel from voxels of the same number share an id.
+        int open = 1;
+        bool answering = false;  ///< the ray has ended, its answer is on its way
+        std::array<Cycle, stall_causes + 1> waited{};
+    };
+    struct Line {
+        std::size_t cell;
+        std::uint64_t ray;
+        std::string text;
+    };
+
+    Life* life_of(std::uint64_t ray);
+    std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width_) + std::size_t(x); }
+    void tell(std::size_t cell, int x, int y, Cycle now, const Life& life, const std::string& what);
+    void flush();
+    std::string what_happened(const Cell& cell, CellEvent event, std::uint32_t detail, Life& life) const;
+    void summarise(const Life& life, Cycle now);
+
+    std::ostream& out_;
+    Networks networks_;
+    int width_;
+    int height_;
+    std::map<std::uint64_t, bool> roots_;  ///< asked for by id, and whether it came
+    std::unordered_set<std::uint64_t> pixels_;
+    std::unordered_map<std::uint64_t, std::size_t> known_;  ///< ray to its place in lives_
+    std::vector<Life> lives_;                               ///< in the order of their first launch
+    Cycle cycle_ = 0;                                       ///< of lines_
+    std::vector<Line> lines_;
+};
+
+struct RenderOptions;
+/// The watch that the options ask for, null if they ask for none. Throws UsageError for what can't be
+/// watched.
+std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& out);
+
+/// A ray's id as reports print it: PIXEL/PART.
+std::string text_of_ray(std::uint64_t id);
+/// The reverse; false if it is not of this form.
+bool parse_ray(const std::string& word, std::uint64_t& id);
+
+}  // namespace raycell
