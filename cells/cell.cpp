@@ -95,10 +95,8 @@ void Cell::unpark(Cycle now) {
 }
 
 void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail) {
-    // FNV-1a over (cycle, event, detail); the array joins its cells' hashes in their order.
-    for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(hashed)}) {
-        hash_ = (hash_ ^ word) * 0x100000001b3ULL;
-    }
+    // Over (cycle, event, detail); the array joins its cells' hashes in their order.
+    for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(hashed)}) hash_.add(word);
     if (event != CellEvent::test) moved_ = true;
     tell(now, event, ray, detail);
 }
@@ -239,7 +237,7 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
     tell(now, CellEvent::answer, answer.id, std::uint32_t(answer.kind));
     ++env_.counters.rays.return_hops;
     ++statistics_.return_hops;
-    if (env_.phase == Phase::trace) ++env_.pixel_hops[std::size_t(answer.id >> 32)];
+    if (env_.phase == Phase::trace) ++env_.pixel_hops[pixel_of(answer.id)];
     Answer* copy = env_.pools.answers.take();
     *copy = answer;
     const bool intensity = answer.kind == Answer::Kind::intensity;
@@ -307,7 +305,7 @@ void Cell::move_answer(std::size_t from, Cycle now) {
         }
         ++env_.counters.rays.return_hops;
         ++statistics_.return_hops;
-        if (env_.phase == Phase::trace) ++env_.pixel_hops[std::size_t(answer->id >> 32)];
+        if (env_.phase == Phase::trace) ++env_.pixel_hops[pixel_of(answer->id)];
         const bool intensity = answer->kind == Answer::Kind::intensity;
         out->send(index, message, intensity ? env_.cycles.intensity : env_.cycles.verdict,
                   env_.answer_routing);
@@ -436,7 +434,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
         ++env_.counters.rays.ray_hops;
         ++statistics_.ray_hops;
     }
-    if (env_.phase == Phase::trace) ++env_.pixel_hops[std::size_t(ray.id >> 32)];
+    if (env_.phase == Phase::trace) ++env_.pixel_hops[pixel_of(ray.id)];
     ++packet.hops;
     out->send(index, Message(&packet), cycles);
     record_send(now, side, index, ray.id);
@@ -455,7 +453,7 @@ bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, cons
         if (kind == Answer::Kind::postponed) {
             ++env_.counters.rays_destroyed;
             env_.ledger.add(packet, x_, y_, now);
-            if (env_.phase == Phase::trace) ++env_.picture.pixels[std::size_t(packet.ray.id >> 32)].postponed;
+            if (env_.phase == Phase::trace) ++env_.picture.pixels[pixel_of(packet.ray.id)].postponed;
             ++statistics_.postponed;
             record(now, CellEvent::postpone, std::uint32_t(packet.ray.id), packet.ray.id, 0);
         } else {

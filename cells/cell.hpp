@@ -63,15 +63,15 @@ class alignas(64) Cell final : public Client {
     const RayStore& ray_store() const { return ray_store_; }
     int x() const { return x_; }
     int y() const { return y_; }
-    std::uint64_t schedule_hash() const { return hash_; }
+    std::uint64_t schedule_hash() const { return hash_.value(); }
     /// What loading leaves in a cell beside its voxels.
     struct Loading {
         std::uint64_t hash = 0;  ///< of its schedule
         std::uint64_t hops = 0;
     };
-    Loading loading() const { return {hash_, statistics_.load_hops}; }
+    Loading loading() const { return {hash_.value(), statistics_.load_hops}; }
     void restore(const Loading& loading) {
-        hash_ = loading.hash;
+        hash_ = Fnv(loading.hash);
         statistics_.load_hops = loading.hops;
     }
     /// What the cell has done so far; what is still going on counts up to `now`.
@@ -312,7 +312,7 @@ class alignas(64) Cell final : public Client {
     std::uint32_t run_count_ = 0;
 
     const DepthRun* runs_ = nullptr;  ///< of the voxels, once they are all there
-    std::uint64_t hash_ = 0;
+    Fnv hash_{0};
     Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
     Cycle look_for_overdue_ =
         patience;  ///< cycle from which on to look for messages that waited for too long

@@ -79,7 +79,7 @@ void Cell::fetch_ways() const {
         const auto side = std::size_t(route(*head->answer));
         out_[side]->fetch(env_.buffer_places[side][std::size_t(env_.classes.answer)]);
         fetch_neighbour(side);
-        fetch_line(&env_.pixel_hops[std::size_t(head->answer->id >> 32)]);
+        fetch_line(&env_.pixel_hops[pixel_of(head->answer->id)]);
     }
 }
 

@@ -6,7 +6,7 @@ namespace {
 
 std::string describe_ray(const RayPacket& packet) {
     const Ray& ray = packet.ray;
-    std::string text = "ray " + name_ray(ray.id) + " of generation " + std::to_string(ray.generation);
+    std::string text = "ray " + ray_name(ray.id) + " of generation " + std::to_string(ray.generation);
     if (packet.stage != RayPacket::Stage::decided) return text + ", not yet tested";
     switch (packet.visit.event) {
         case Visit::Event::forward:
@@ -43,7 +43,7 @@ std::vector<std::string> Cell::describe_blocked() const {
         if (message.kind != Message::Kind::answer) continue;
         lines.push_back(at + "input " + name_of(Side(side)) + " since cycle " +
                         std::to_string(in->arrival(env_.classes.answer)) + ": answer to ray " +
-                        name_ray(message.answer->id) +
+                        ray_name(message.answer->id) +
                         (local(*message.answer)
                              ? ", is home"
                              : std::string(", waits for the output ") + name_of(route(*message.answer))));
@@ -57,7 +57,7 @@ std::vector<std::string> Cell::describe_blocked() const {
         if (slot.state == Slot::State::empty || !slot.packet) continue;
         const Ray& ray = slot.packet->ray;
         lines.push_back(at + "slot " + std::to_string(i) + " since cycle " + std::to_string(slot.since) +
-                        ": ray " + name_ray(ray.id) + " of generation " + std::to_string(ray.generation) +
+                        ": ray " + ray_name(ray.id) + " of generation " + std::to_string(ray.generation) +
                         (slot.child ? "; its child: " + describe_ray(*slot.child) : ", waits for answers"));
     }
     return lines;

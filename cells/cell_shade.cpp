@@ -159,7 +159,7 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
             asked_[hit.voxel] |= bit;
             ++env_.counters.rays.shadow;
             Ray ray = voxel_shadow_ray(env_.context, store_, hit.voxel, source, RayKind::memo, x_, y_);
-            ray.id = (parent.id >> 32 << 32) | (ray.id & 0xffffffffU);  // its hops belong to this pixel
+            ray.id = ray_id(pixel_of(parent.id), branch_of(ray.id));  // its hops belong to this pixel
             return launch(ray, &parent);
         }
         ++env_.counters.rays.shadow;
@@ -284,7 +284,7 @@ void Cell::begin_set_up(std::uint32_t index, Cycle now) {
     const RayPacket& packet = *slot.packet;
     slot.setup = set_up_hit(env_.context, store_, packet.ray, packet.visit.hit, x_, y_);
     if (packet.ray.kind == RayKind::primary) {
-        record_first_hit(env_.picture.pixels[std::size_t(packet.ray.id >> 32)], slot.setup,
+        record_first_hit(env_.picture.pixels[pixel_of(packet.ray.id)], slot.setup,
                          store_.voxels[packet.visit.hit.voxel].polygon);
     }
     slot.state = Slot::State::in_setup;
@@ -303,7 +303,7 @@ void Cell::begin_direct(RayPacket& packet, Cycle now) {
     const HitSetup setup = set_up_hit(env_.context, store_, packet.ray, hit, x_, y_);
     const Voxel& voxel = store_.voxels[hit.voxel];
     if (packet.ray.kind == RayKind::primary) {
-        record_first_hit(env_.picture.pixels[std::size_t(packet.ray.id >> 32)], setup, voxel.polygon);
+        record_first_hit(env_.picture.pixels[pixel_of(packet.ray.id)], setup, voxel.polygon);
     }
     const std::uint64_t lit = env_.context.settings.shadows == Shadows::per_hit ? 0 : store_.lit[hit.voxel];
     const std::uint32_t cycles = unit_cycles(setup_cycles(env_.context, setup, env_.costs()) +

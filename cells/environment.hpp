@@ -10,6 +10,7 @@
 #include "cells/meters/ledger.hpp"
 #include "cells/units/time_out.hpp"
 #include "model/machine/untimed.hpp"
+#include "model/numbers/hash.hpp"
 #include "model/picture/picture.hpp"
 
 namespace raycell {

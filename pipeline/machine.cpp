@@ -1,7 +1,6 @@
 #include "pipeline/machine.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <stdexcept>
 #include <tuple>
@@ -10,14 +9,6 @@
 #include "model/tracing/traffic.hpp"
 
 namespace raycell {
-namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-}  // namespace
-
 const char* name_of(Verdict verdict) {
     switch (verdict) {
         case Verdict::completed:
@@ -187,7 +178,7 @@ void Machine::tell_progress(Cycle now) const {
 }
 
 void Machine::run_phase(Phase phase, RunResult& result) {
-    phase_began_ = std::chrono::steady_clock::now();
+    phase_began_ = WallClock::now();
     const std::clock_t processor = std::clock();
     environment_.phase = phase;
     environment_.phase_start = scheduler_.now();

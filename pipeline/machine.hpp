@@ -1,7 +1,6 @@
 // The whole machine: binds the stages, the array and the exterior, and runs the phases.
 #pragma once
 
-#include <chrono>
 #include <csignal>
 #include <functional>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cells/clock/wall_time.hpp"
 #include "cells/deadlock/wait_map.hpp"
 #include "cells/hosts/array.hpp"
 #include "model/files/array_file.hpp"
@@ -226,7 +226,7 @@ class Machine : public sc_core::sc_module {
     std::vector<std::unique_ptr<Link>> row_links_;
     std::function<void(const RunProgress&)> progress_;
     std::uint64_t watch_calls_ = 0;
-    std::chrono::steady_clock::time_point phase_began_;
+    WallClock::time_point phase_began_;
     std::uint64_t precast_rays_ = 0;
     ActivityRecorder activity_;
     Cycle slow_ray_ = 0;               ///< slow_ray(), which goes through the whole cost table

@@ -67,7 +67,7 @@ std::uint64_t Machine::joined_schedule_hash() const {
     if (!ranks_) return array_.schedule_hash();
     ByteWriter bytes;  // cells stand in the order of their rows
     for (const Cell& cell : array_.cells()) bytes.put(cell.schedule_hash());
-    ScheduleHash whole;
+    Fnv whole;
     RankReaders readers(*ranks_, ranks_->gather(bytes.take()));
     if (readers.empty()) return 0;  // rank 0 knows
     for (int y = 0; y < environment_.height(); ++y) {

@@ -102,19 +102,15 @@ void WaitMap::read_waits(ByteReader& bytes) {
     }
 }
 
-std::string name_ray(std::uint64_t id) {
-    return std::to_string(id >> 32) + "/" + std::to_string(id & 0xffffffffU);
-}
-
 std::string describe(const Ray& ray) {
     constexpr const char* kinds[] = {"primary", "reflected", "refracted", "shadow", "memo", "precast"};
-    return std::string(kinds[int(ray.kind)]) + " ray " + name_ray(ray.id) + " of generation " +
+    return std::string(kinds[int(ray.kind)]) + " ray " + ray_name(ray.id) + " of generation " +
            std::to_string(ray.generation);
 }
 
 std::string describe(const Answer& answer) {
     constexpr const char* kinds[] = {"intensity", "lit", "blocked", "postponed"};
-    return std::string("answer '") + kinds[int(answer.kind)] + "' to ray " + name_ray(answer.id);
+    return std::string("answer '") + kinds[int(answer.kind)] + "' to ray " + ray_name(answer.id);
 }
 
 std::string describe(const LoadItem& item) {

@@ -71,7 +71,6 @@ class WaitMap {
 };
 
 /// A ray's id as reports print it: pixel / path.
-std::string name_ray(std::uint64_t id);
 std::string describe(const Ray& ray);
 std::string describe(const Answer& answer);
 std::string describe(const LoadItem& item);

@@ -193,7 +193,7 @@ void Array::begin_phase() {
 }
 
 std::uint64_t Array::schedule_hash() const {
-    ScheduleHash hash;
+    Fnv hash;
     for (const Cell& cell : cells_) hash.add(cell.schedule_hash());
     return hash.value();
 }

@@ -26,16 +26,6 @@ struct Granularity {
     std::size_t modules(int width, int height) const;
 };
 
-/// The hashes of cells' schedules, joined in the order of the cells.
-class ScheduleHash {
-  public:
-    void add(std::uint64_t cell) { value_ = (value_ ^ cell) * 0x100000001b3ULL; }
-    std::uint64_t value() const { return value_; }
-
-  private:
-    std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
-
 /// Of an array that several ranks share, each has its rows (Environment::share); a cell's place is the whole
 /// array's.
 class Array : public sc_core::sc_module {

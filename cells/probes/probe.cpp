@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cells/probes/save_file.hpp"
+#include "model/numbers/bits.hpp"
 
 namespace raycell {
 namespace {
@@ -29,11 +30,8 @@ constexpr std::uint64_t first_ray = 2;
 constexpr std::uint64_t first_answer = 8;
 constexpr std::uint64_t first_load = 12;
 
-int bits_for_value(int most) {
-    int bits = 1;
-    while (most >> bits > 0) ++bits;
-    return bits;
-}
+/// Of numbers up to `most`; a signal has one at least.
+int bits_for_value(int most) { return std::max(bits_for(most + 1), 1); }
 
 struct Head {
     std::uint64_t type = no_message;

@@ -3,21 +3,24 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "model/numbers/hash.hpp"
+
 namespace raycell {
 namespace {
 
 constexpr std::uint64_t magic = 0x326c6c6563796172ULL;  // "raycell" and a version
-constexpr std::uint64_t fnv_start = 0xcbf29ce484222325ULL;
-constexpr std::uint64_t fnv_prime = 0x100000001b3ULL;
 
 /// Every number is visited as 64 bits, so that writing, reading and hashing go over one list of fields.
 class Hasher {
   public:
-    void number(std::uint64_t value) { hash_ = (hash_ ^ value) * fnv_prime, hash_ ^= hash_ >> 29; }
-    std::uint64_t hash() const { return hash_; }
+    void number(std::uint64_t value) {
+        hash_.add(value);
+        hash_.fold(29);
+    }
+    std::uint64_t hash() const { return hash_.value(); }
 
   private:
-    std::uint64_t hash_ = fnv_start;
+    Fnv hash_;
 };
 
 class Writer {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/numbers/bits.hpp"
+#include "model/numbers/field_widths.hpp"
+
 namespace raycell {
 namespace {
 
@@ -315,13 +318,11 @@ int feature_bits(const Formats& formats) {
 }
 
 VoxelBits voxel_bits(const PictureSettings& settings, const Formats& formats, std::size_t sources) {
-    constexpr int polygon_id = 20;
     const int word = formats.word_bits;
-    int level_bits = 0;
-    while ((1 << level_bits) < settings.depth_levels) ++level_bits;
+    const int level_bits = bits_for(settings.depth_levels);
     VoxelBits bits;
     // One depth, one normal: the paper's voxel.
-    bits.base = polygon_id + feature_bits(formats) + level_bits + 3 * word;
+    bits.base = field::polygon_id + feature_bits(formats) + level_bits + 3 * word;
     if (settings.hit != HitTest::depth) bits.base += level_bits;
     // Two slopes and an offset; which axis they are for, and its sign.
     if (settings.hit >= HitTest::plane) bits.base += 3 * word + 3;

@@ -3,18 +3,10 @@
 #include <algorithm>
 
 #include "model/loading/voxel.hpp"
+#include "model/numbers/bits.hpp"
+#include "model/numbers/field_widths.hpp"
 
 namespace raycell {
-namespace {
-
-int bits_for(int values) {
-    int bits = 0;
-    while ((1 << bits) < values) ++bits;
-    return bits;
-}
-
-}  // namespace
-
 Answer answer_to(const Ray& ray, Answer::Kind kind) {
     Answer answer;
     answer.kind = kind;
@@ -30,25 +22,20 @@ Answer answer_to(const Ray& ray, Answer::Kind kind) {
 MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
                          const Formats& formats) {
     const int word = formats.word_bits;
-    constexpr int type = 3;
-    constexpr int polygon_id = 20;
-    constexpr int generation = 6;
-    constexpr int child = 6;
     const int home = bits_for(picture.width) + bits_for(picture.height);
     // A slot, or none (the pixel itself); verdicts on voxels name the voxel instead, up to 1024 in a cell.
-    constexpr int voxel_index = 10;
     int slot = bits_for(machine.ray_store + 1);
-    if (picture.shadows != Shadows::per_hit) slot = std::max(slot, voxel_index);
-    const int address = home + slot + child;
+    if (picture.shadows != Shadows::per_hit) slot = std::max(slot, field::voxel_index);
+    const int address = home + slot + field::child;
     MessageBits bits;
     // Place, direction, the reciprocals of dx and dy (mantissas; their signs are the direction's).
     const int place = 2 * word + formats.depth_word_bits();
     const int way = place + 3 * word + 2 * (word + Formats::exponent_bits);
     // A weight, or for a shadow ray the distance to its source; flags: fresh, outside, side left.
-    bits.ray = type + way + word + polygon_id + generation + address + 3;
-    bits.shadow_ray = type + way + word + polygon_id + address + 3;
-    bits.intensity = type + 3 * word + address;
-    bits.verdict = type + address;
+    bits.ray = field::type + way + word + field::polygon_id + field::generation + address + 3;
+    bits.shadow_ray = field::type + way + word + field::polygon_id + address + 3;
+    bits.intensity = field::type + 3 * word + address;
+    bits.verdict = field::type + address;
     const int loading = formats.loading.bits();
     const int columns = 2 * bits_for(picture.width);
     const int gouraud = picture.display == Display::gouraud ? 6 * loading : 0;
@@ -56,13 +43,13 @@ MessageBits message_bits(const PictureSettings& picture, const MachineSettings& 
     const int plane = 4 * loading + 3;  // two slopes, offset, slack; dominant axis and its sign
     const int edges = 4 * 3 * loading + 3;
     // X1, Xr, near and far with their increment and bounds, plane, normal field, edges (paper, section 3.1).
-    bits.span = type + polygon_id + columns + 5 * loading + plane + normals + edges + gouraud;
-    bits.trapeze = type + polygon_id + 4 * 3 * loading + plane + normals + edges + 2 * gouraud;
-    bits.polygon = type + polygon_id + plane + normals;
+    bits.span = field::type + field::polygon_id + columns + 5 * loading + plane + normals + edges + gouraud;
+    bits.trapeze = field::type + field::polygon_id + 4 * 3 * loading + plane + normals + edges + 2 * gouraud;
+    bits.polygon = field::type + field::polygon_id + plane + normals;
     bits.vertex = 3 * loading;
-    bits.features = type + feature_bits(formats);
-    bits.end_of_scene = type;
-    bits.viewer = type + formats.place_bits() + 6;
+    bits.features = field::type + feature_bits(formats);
+    bits.end_of_scene = field::type;
+    bits.viewer = field::type + formats.place_bits() + 6;
     bits.source = formats.place_bits() + 3 * word;
     return bits;
 }

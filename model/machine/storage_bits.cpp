@@ -2,30 +2,20 @@
 
 #include <algorithm>
 
+#include "model/numbers/bits.hpp"
+#include "model/numbers/field_widths.hpp"
+
 namespace raycell {
-namespace {
-
-int bits_for(std::int64_t values) {
-    int bits = 0;
-    while ((std::int64_t(1) << bits) < values) ++bits;
-    return bits;
-}
-
-}  // namespace
-
 SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machine, const Formats& formats,
                    std::size_t sources) {
-    constexpr int type = 3;
-    constexpr int voxel_index = 10;  // as in message_bits: up to 1024 voxels in a cell
-    constexpr int generation = 6;
     constexpr int children = 2;
     const int word = formats.word_bits;
     const int direction = 3 * word;
     const MessageBits messages = message_bits(picture, machine, formats);
-    const int address = messages.verdict - type;
+    const int address = messages.verdict - field::type;
     SlotBits bits;
-    bits.control = 3 + bits_for(machine.ray_store) + voxel_index;  // six states; the oldest goes first
-    bits.ray = address + 2 + generation + word + direction;        // kind: primary, reflected, refracted
+    bits.control = 3 + bits_for(machine.ray_store) + field::voxel_index;  // six states; the oldest goes first
+    bits.ray = address + 2 + field::generation + word + direction;  // kind: primary, reflected, refracted
     bits.hit = 2 * word + formats.depth_word_bits() + direction + 1;
     bits.children = children * (direction + 2 + 3 * word);
     if (machine.recovery == Recovery::postpone) {

@@ -7,6 +7,7 @@
 
 #include "model/geometry/polygon.hpp"
 #include "model/numbers/arithmetic.hpp"
+#include "model/tracing/ray_id.hpp"
 
 namespace raycell {
 

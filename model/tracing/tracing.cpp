@@ -273,7 +273,7 @@ int waiting_generations(const Context& context) {
 Ray primary_ray(const Context& context, int x, int y) {
     const Frame& frame = context.scene.frame;
     Ray ray;
-    ray.id = (std::uint64_t(y) * std::uint64_t(frame.width) + std::uint64_t(x)) << 32;
+    ray.id = ray_id(std::uint64_t(y) * std::uint64_t(frame.width) + std::uint64_t(x), 0);
     ray.home_x = std::uint16_t(x);
     ray.home_y = std::uint16_t(y);
     if (context.traffic) {
@@ -320,8 +320,7 @@ Ray shadow_ray(const Context& context, const CellStore& store, const Ray& parent
 Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32_t voxel, std::size_t source,
                      RayKind kind, int x, int y) {
     Ray parent;
-    parent.id =
-        (std::uint64_t(y) * std::uint64_t(context.scene.frame.width) + std::uint64_t(x)) << 32 | voxel;
+    parent.id = ray_id(std::uint64_t(y) * std::uint64_t(context.scene.frame.width) + std::uint64_t(x), voxel);
     Ray ray = child_of(parent, kind, unsigned(source), x, y);
     ray.slot = voxel;
     const Arithmetic& arithmetic = context.arithmetic;

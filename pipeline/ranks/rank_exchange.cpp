@@ -1,22 +1,13 @@
 #include "pipeline/ranks/rank_exchange.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <set>
 #include <stdexcept>
 
+#include "cells/clock/wall_time.hpp"
+
 namespace raycell {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-}  // namespace
-
 void RankProgress::join(const RankProgress& other) {
     next = std::min(next, other.next);
     last_progress = std::max(last_progress, other.last_progress);
@@ -94,7 +85,7 @@ void RankExchange::carry(const RankProgress& mine, bool with_links) {
         parcels_[i].out = &out;
         statistics_.bytes += out.size();
     }
-    const auto start = Clock::now();
+    const auto start = WallClock::now();
     transport_.swap(parcels_);
     statistics_.waited += seconds_since(start);
 }
@@ -128,7 +119,7 @@ RankProgress RankExchange::meet(RankProgress mine, Environment& environment) {
         agreed_.join(theirs());
         return agreed_;
     }
-    const auto start = Clock::now();
+    const auto start = WallClock::now();
     agreed_ = transport_.agree(mine);
     statistics_.waited += seconds_since(start);
     return agreed_;

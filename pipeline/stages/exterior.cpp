@@ -144,7 +144,7 @@ bool Exterior::answer(Processor& processor, Cycle now, Cycle& retry) {
     ++env.counters.rays_answered;
     ++env.counters.answers_sent;
     ++env.counters.rays.return_hops;
-    if (env.phase == Phase::trace) ++env.pixel_hops[std::size_t(processor.answer.id >> 32)];
+    if (env.phase == Phase::trace) ++env.pixel_hops[pixel_of(processor.answer.id)];
     return true;
 }
 

@@ -39,7 +39,7 @@ std::string ledger_csv(const Ledger& ledger) {
     std::string text = "cycle,x,y,ray,generation,home_x,home_y,launched,hops\n";
     for (const Ledger::Entry& e : entries) {
         text += std::to_string(e.cycle) + ',' + std::to_string(e.x) + ',' + std::to_string(e.y) + ',' +
-                name_ray(e.ray) + ',' + std::to_string(e.generation) + ',' + std::to_string(e.home_x) + ',' +
+                ray_name(e.ray) + ',' + std::to_string(e.generation) + ',' + std::to_string(e.home_x) + ',' +
                 std::to_string(e.home_y) + ',' + std::to_string(e.launched) + ',' + std::to_string(e.hops) +
                 '\n';
     }

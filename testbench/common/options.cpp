@@ -157,7 +157,7 @@ void OptionTable::rays(const std::string& name, std::vector<std::uint64_t>& targ
         ->allow_extra_args(false);
     entries_.push_back({name, [&target] {
                             nlohmann::ordered_json list = nlohmann::ordered_json::array();
-                            for (const std::uint64_t id : target) list.push_back(text_of_ray(id));
+                            for (const std::uint64_t id : target) list.push_back(ray_name(id));
                             return list;
                         }});
 }

@@ -41,10 +41,6 @@ std::string outcome(Visit::Event event, RayKind kind) {
 
 }  // namespace
 
-std::string text_of_ray(std::uint64_t id) {
-    return std::to_string(id >> 32) + "/" + std::to_string(id & 0xffffffffU);
-}
-
 bool parse_ray(const std::string& word, std::uint64_t& id) {
     const auto slash = word.find('/');
     std::uint32_t pixel = 0;
@@ -53,7 +49,7 @@ bool parse_ray(const std::string& word, std::uint64_t& id) {
         !parse_number(word.substr(slash + 1), part)) {
         return false;
     }
-    id = std::uint64_t(pixel) << 32 | part;
+    id = ray_id(pixel, part);
     return true;
 }
 
@@ -70,7 +66,7 @@ void RayWatch::launched(const Cell& cell, Cycle now, const Ray& ray, const Ray* 
         return;
     }
     const auto root = roots_.find(ray.id);
-    const bool by_pixel = ray.kind != RayKind::precast && pixels_.count(ray.id >> 32) > 0;
+    const bool by_pixel = ray.kind != RayKind::precast && pixels_.count(pixel_of(ray.id)) > 0;
     const Life* ancestor = parent ? life_of(parent->id) : nullptr;
     if (root != roots_.end()) root->second = true;
     if (root == roots_.end() && !by_pixel && !ancestor) return;
@@ -175,8 +171,7 @@ void RayWatch::tell(std::size_t cell, int x, int y, Cycle now, const Life& life,
     cycle.insert(0, cycle.size() < 9 ? 9 - cycle.size() : 0, ' ');
     lines_.push_back({cell, life.id,
                       cycle + "  " + padded(text_of_cell(x, y), 12) +
-                          std::string(std::size_t(2 * life.depth), ' ') + text_of_ray(life.id) + "  " +
-                          what});
+                          std::string(std::size_t(2 * life.depth), ' ') + ray_name(life.id) + "  " + what});
 }
 
 void RayWatch::flush() {
@@ -197,7 +192,7 @@ void RayWatch::summarise(const Life& life, Cycle now) {
         causes += (causes.empty() ? " (" : ", ") + std::string(stall_names[cause]) + " " +
                   std::to_string(life.waited[cause]);
     }
-    out_ << "ray " << text_of_ray(life.id) << ": " << kind_names[int(life.kind)] << ", generation "
+    out_ << "ray " << ray_name(life.id) << ": " << kind_names[int(life.kind)] << ", generation "
          << life.generation << ", from cell " << text_of_cell(life.x, life.y) << ", cycles " << life.launched
          << " to " << end << (ended ? "" : " (not home)") << ", " << end - life.launched << " cycles, hops "
          << life.ray_hops << " + " << life.answer_hops << " of answers, waited " << waited << causes
@@ -218,7 +213,7 @@ void RayWatch::finish(Cycle now) {
         hops += life.ray_hops + life.answer_hops;
     }
     for (const auto& [id, came] : roots_) {
-        if (!came) out_ << "ray " << text_of_ray(id) << " was never launched\n";
+        if (!came) out_ << "ray " << ray_name(id) << " was never launched\n";
     }
     out_ << "watched: " << times(lives_.size(), "ray") << ", " << times(hops, "hop") << '\n';
 }
@@ -236,8 +231,8 @@ std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& o
     const auto pixels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
     auto watch = std::make_unique<RayWatch>(out, options.machine.networks, picture.width, picture.height);
     for (const std::uint64_t id : options.watch_rays) {
-        if (id >> 32 >= pixels) {
-            throw UsageError("--watch-ray: there is no pixel " + std::to_string(id >> 32) +
+        if (pixel_of(id) >= pixels) {
+            throw UsageError("--watch-ray: there is no pixel " + std::to_string(pixel_of(id)) +
                              "; expected PIXEL from 0 to " + std::to_string(pixels - 1));
         }
         watch->watch_ray(id);

@@ -87,8 +87,6 @@ struct RenderOptions;
 /// watched.
 std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& out);
 
-/// A ray's id as reports print it: PIXEL/PART.
-std::string text_of_ray(std::uint64_t id);
 /// The reverse; false if it is not of this form.
 bool parse_ray(const std::string& word, std::uint64_t& id);
 

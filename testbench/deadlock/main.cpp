@@ -1,10 +1,10 @@
 // deadlock_tb: synthetic ray traffic through the simulated machine, without a scene: does it lock, and where?
 #include <algorithm>
-#include <chrono>
 #include <iomanip>
 #include <iostream>
 #include <systemc>
 
+#include "cells/clock/wall_time.hpp"
 #include "model/tracing/traffic.hpp"
 #include "testbench/common/configuration.hpp"
 #include "testbench/common/entry.hpp"
@@ -20,8 +20,6 @@ namespace {
 
 using namespace raycell;
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
 struct Options {
     RenderOptions run;  ///< array, machine, --output, --quiet
     TrafficSettings traffic;
@@ -72,10 +70,6 @@ bool equals(const Picture& picture, const Picture& golden) {
     return true;
 }
 
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 void summarise(const Json& json, std::uint64_t seed) {
     const Json& pixels = json["pixels"];
     std::cout << "verdict " << json["verdict"].get<std::string>() << " after " << json["cycles"]["trace"]
@@ -107,10 +101,10 @@ int run(Options& options, const OptionTable& table) {
     const CellScene scene = traffic_scene(picture, options.traffic);
     const Bound bound = bound_of(Context(scene, picture), o.machine);
     warn_of(bound, "deadlock_tb");
-    const auto start = Clock::now();
+    const auto start = WallClock::now();
     const Picture golden = UntimedMachine(scene, picture, nullptr, &traffic).render();
     const double wall_untimed = seconds_since(start);
-    const auto built = Clock::now();
+    const auto built = WallClock::now();
     // Never destroyed: SystemC takes ports down in quadratic time.
     static Machine* const machine =
         new Machine("machine", scene, picture, o.machine, nullptr, &traffic, granularity_of(o));

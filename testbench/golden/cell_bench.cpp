@@ -179,7 +179,7 @@ std::string CellBench::objection(const Message& message, int index) const {
     const BufferClasses& classes = environment_.classes;
     const auto pixels = std::uint64_t(environment_.width()) * std::uint64_t(environment_.height());
     const auto at_home = [&](const auto& m) {
-        return m.home_x < environment_.width() && m.home_y < environment_.height() && m.id >> 32 < pixels;
+        return m.home_x < environment_.width() && m.home_y < environment_.height() && pixel_of(m.id) < pixels;
     };
     switch (message.kind) {
         case Message::Kind::ray: {

@@ -143,11 +143,11 @@ void vector(A& a, const std::array<const char*, 3>& names, V& v, const Format& f
 /// message.
 template <typename A, typename Id>
 void id_of(A& a, Id& id) {
-    std::uint64_t pixel = id >> 32;
-    std::uint64_t branch = id & 0xffffffffU;
+    std::uint64_t pixel = pixel_of(id);
+    std::uint64_t branch = branch_of(id);
     a.number("pixel", pixel, 0xffffffffU);
     a.number("branch", branch, 0xffffffffU);
-    if constexpr (!std::is_const_v<Id>) id = pixel << 32 | branch;
+    if constexpr (!std::is_const_v<Id>) id = ray_id(pixel, std::uint32_t(branch));
 }
 
 template <typename A, typename R>

@@ -1,12 +1,12 @@
 // loading_tb: the loading pipeline alone, no rays: does it load what it should, in order, and what holds it
 // up?
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <systemc>
 
+#include "cells/clock/wall_time.hpp"
 #include "model/machine/losses.hpp"
 #include "testbench/common/configuration.hpp"
 #include "testbench/common/entry.hpp"
@@ -25,8 +25,6 @@ namespace {
 using namespace raycell;
 using namespace raycell::loading;
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
 struct Options {
     RenderOptions run;  ///< scene, array, machine, --output, --quiet
     RandomPolygons random;
@@ -151,9 +149,9 @@ int run(Options& options, const OptionTable& table) {
     for (const std::string& warning : loss_warnings(losses_of(context), context)) {
         std::cerr << "loading_tb: warning: " << warning << '\n';
     }
-    const auto start = Clock::now();
+    const auto start = WallClock::now();
     const LoadPlan plan = plan_loading(scene, o.picture, o.machine);
-    const double wall_plan = std::chrono::duration<double>(Clock::now() - start).count();
+    const double wall_plan = seconds_since(start);
     // Never destroyed: SystemC takes ports down in quadratic time.
     static Machine* const machine = new Machine("machine", scene, o.picture, o.machine, nullptr);
     LoadWatch watch(plan, o.machine, Machine::stage_link_depth);

@@ -5,6 +5,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "model/numbers/hash.hpp"
+
 namespace raycell::protocol {
 namespace {
 
@@ -224,9 +226,10 @@ class Seen {
   private:
     static constexpr std::uint32_t none = ~std::uint32_t(0);
     std::size_t find(const std::uint8_t* state) const {
-        std::uint64_t hash = 0xcbf29ce484222325ULL;
-        for (std::size_t i = 0; i < bytes_; ++i) hash = (hash ^ state[i]) * 0x100000001b3ULL;
-        std::size_t slot = (hash ^ hash >> 29) & (table_.size() - 1);
+        Fnv hash;
+        hash.add_bytes(state, bytes_);
+        hash.fold(29);
+        std::size_t slot = hash.value() & (table_.size() - 1);
         while (table_[slot] != none && !std::equal(state, state + bytes_, &states_[table_[slot] * bytes_])) {
             slot = (slot + 1) & (table_.size() - 1);
         }

@@ -2,11 +2,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iostream>
 
+#include "cells/clock/wall_time.hpp"
 #include "cells/meters/observer_list.hpp"
 #include "model/machine/losses.hpp"
 #include "model/machine/untimed.hpp"
@@ -36,12 +36,7 @@
 namespace raycell {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::uint64_t peak_memory_bytes() {
     rusage usage{};
@@ -86,7 +81,7 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     Run run;
     ArrayFiles arrays(options, scene);
     if (!ranks || ranks->first()) foretell(options, scene, truth, run);
-    const auto start = Clock::now();
+    const auto start = WallClock::now();
     const std::uint64_t before = memory_bytes();
     // Never destroyed: SystemC takes ports down in quadratic time (minutes for 256x256 cells), and a process
     // has only one elaboration anyway.
@@ -131,13 +126,13 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
 
 Run run_untimed(const RenderOptions& options, const CellScene& scene, const ExteriorTracer* tracer) {
     Run run;
-    const auto start = Clock::now();
+    const auto start = WallClock::now();
     const std::uint64_t before = memory_bytes();
     UntimedMachine machine(scene, options.picture, tracer);
     RunResult& result = run.result;
     result.wall_load = seconds_since(start);
     const bool progress = shows_progress(options);
-    const auto traced = Clock::now();
+    const auto traced = WallClock::now();
     result.picture = machine.render([&](int row) {
         if (progress) std::cerr << "\rrow " << row + 1 << " of " << options.picture.height << std::flush;
     });
@@ -317,7 +312,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
     check_golden(options);
     check_ranks(options);
     check_arrays(options);
-    const auto start = Clock::now();
+    const auto start = WallClock::now();
     OutputSet outputs(options.prefix);
     const auto read = [&] {
         announce(options, outputs);

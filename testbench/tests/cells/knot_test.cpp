@@ -164,7 +164,7 @@ TEST(Ledger, CountsWhatWasDestroyedWhereAndWhose) {
     std::vector<std::uint64_t> of_pixel(run.result.picture.pixels.size(), 0);
     std::uint64_t hops = 0;
     for (const Ledger::Entry& e : ledger.entries()) {
-        ++of_pixel[std::size_t(e.ray >> 32)];
+        ++of_pixel[pixel_of(e.ray)];
         EXPECT_GE(e.cycle, e.launched);
         EXPECT_GE(e.hops, unsigned(std::abs(e.x - e.home_x) + std::abs(e.y - e.home_y)));
         hops += e.hops + unsigned(std::abs(e.x - e.home_x) + std::abs(e.y - e.home_y));

@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::uint64_t period_ps = 50000;
 
-std::string name_ray(std::uint64_t id) {
-    return std::to_string(id >> 32) + "/" + std::to_string(id & 0xffffffffU);
-}
-
 /// What a buffer must show, from the sends and pops alone.
 struct BufferRecord {
     struct Entry {
@@ -69,8 +65,8 @@ struct Record : LinkObserver, CellObserver {
 
     void sent(const Link& link, int index, const Message& message, int cycles, Cycle now) override {
         BufferRecord& buffer = buffers[{&link, index}];
-        const std::string ray = message.kind == Message::Kind::ray      ? name_ray(message.ray->ray.id)
-                                : message.kind == Message::Kind::answer ? name_ray(message.answer->id)
+        const std::string ray = message.kind == Message::Kind::ray      ? ray_name(message.ray->ray.id)
+                                : message.kind == Message::Kind::answer ? ray_name(message.answer->id)
                                                                         : "-";
         buffer.sends.push_back({now, {now + Cycle(cycles), ray}});
         ++buffer.steps[now];
@@ -167,12 +163,12 @@ void expect_buffers_as_recorded(Networks networks, int depth) {
     for (const auto& [now, event, ray, detail] : record.events) {
         if (event == CellEvent::test) {
             ++tested;
-            EXPECT_EQ(dump.at("raycell.cell_12_10.traversal.ray", now), name_ray(ray));
+            EXPECT_EQ(dump.at("raycell.cell_12_10.traversal.ray", now), ray_name(ray));
             EXPECT_EQ(dump.at("raycell.cell_12_10.traversal.state", now), "busy");
         } else if (event == CellEvent::accept) {
             ++accepted;
             const std::string slot = "raycell.cell_12_10.ray_store.slot_" + std::to_string(detail);
-            EXPECT_EQ(dump.at(slot + ".ray", now), name_ray(ray));
+            EXPECT_EQ(dump.at(slot + ".ray", now), ray_name(ray));
         }
     }
     EXPECT_GT(tested, 10u);

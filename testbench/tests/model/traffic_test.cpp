@@ -212,7 +212,8 @@ TEST(Traffic, NamesChildrenUnlikeTheirParentsAndEachOther) {
             ids.push_back(refracted_ray(array.context, store, parent, CellHit{}, setup, x, y).id);
             ids.push_back(shadow_ray(array.context, store, parent, CellHit{}, setup, 0, x, y).id);
             ids.push_back(shadow_ray(array.context, store, parent, CellHit{}, setup, 1, x, y).id);
-            for (const std::uint64_t id : ids) EXPECT_EQ(id >> 32, ids[0] >> 32) << "the pixel's number";
+            for (const std::uint64_t id : ids)
+                EXPECT_EQ(pixel_of(id), pixel_of(ids[0])) << "the pixel's number";
             std::sort(ids.begin(), ids.end());
             EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
         }

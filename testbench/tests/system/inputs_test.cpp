@@ -6,6 +6,7 @@
 #include <cstring>
 #include <random>
 
+#include "model/numbers/hash.hpp"
 #include "program.hpp"
 
 namespace raycell::system_test {
@@ -86,12 +87,12 @@ std::vector<std::uint64_t> numbers_of(const std::string& bytes) {
     return numbers;
 }
 std::string bytes_of(std::vector<std::uint64_t> numbers) {
-    std::uint64_t hash = 0xcbf29ce484222325ULL;
+    Fnv hash;
     for (std::size_t i = 0; i + 1 < numbers.size(); ++i) {
-        hash = (hash ^ numbers[i]) * 0x100000001b3ULL;
-        hash ^= hash >> 29;
+        hash.add(numbers[i]);
+        hash.fold(29);
     }
-    numbers.back() = hash;
+    numbers.back() = hash.value();
     return std::string(reinterpret_cast<const char*>(numbers.data()), 8 * numbers.size());
 }
 

@@ -1,0 +1,12 @@
+// Bits of the fields that messages, slots and voxels share. docs/cell.md has the tables.
+#pragma once
+
+namespace raycell::field {
+
+constexpr int type = 3;          ///< of a message
+constexpr int polygon_id = 20;   ///< about a million polygons
+constexpr int generation = 6;    ///< --max-depth up to 62
+constexpr int child = 6;         ///< which child or source of a slot: up to 64
+constexpr int voxel_index = 10;  ///< up to 1024 voxels in a cell
+
+}  // namespace raycell::field
