@@ -188,6 +188,7 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     settle(wait_of(*packet, place), packet->ray.id, now);
     packet->wait.cause = Stall::none;
     packet->visit = visit_cell(store_, packet->ray, env_.context, runs_, run_count_);
+    packet->need = need_of(packet->ray, packet->visit, store_, x_, y_, env_.classes, env_.context);
     packet->stage = RayPacket::Stage::in_test;
     env_.counters.rays.ties += packet->visit.event == Visit::Event::hit && packet->visit.hit.tied;
     const std::uint32_t cycles =
@@ -198,9 +199,8 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     traversal_ = {packet, now + cycles, std::uint32_t(place)};
     next_test_ = std::uint32_t(place + 1);
     if (place <= ray_input_count_) {
-        const bool goes_on = packet->visit.event == Visit::Event::forward;
-        ways_[place] =
-            Way(goes_on ? int(packet->visit.crossing.side) : no_way, env_.classes.ray(packet->ray));
+        const Need& need = packet->need;
+        ways_[place] = Way(need.kind == Need::Kind::output ? int(need.side) : no_way, need.index);
     }
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
            std::uint32_t(packet->visit.event));
@@ -367,64 +367,46 @@ void Cell::try_ray(RayPacket& packet, std::size_t place, Cycle now) {
 }
 
 bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
-    // By far the most of all attempts, and those that fail most: apart, to be quick.
-    if (packet.visit.event == Visit::Event::forward) return forward(packet, place, now);
-    return finish_ray(packet, place, now);
-}
-
-bool Cell::finish_ray(RayPacket& packet, std::size_t place, Cycle now) {
-    const Ray& ray = packet.ray;
-    switch (packet.visit.event) {
-        case Visit::Event::forward:
+    const Need need = packet.need;
+    switch (need.kind) {
+        case Need::Kind::output:
+            return forward(packet, place, now);
+        case Need::Kind::response: {
+            if (!respond(packet, place, need.answer, need.lost ? env_.context.background : dvec3(0), now))
+                return false;
             break;
-        case Visit::Event::hit:
-            if (is_shadow(ray.kind)) return end_ray(packet, place, Answer::Kind::blocked, dvec3(0), now);
+        }
+        case Need::Kind::nothing:
+            end_silently(packet, place, now);
+            break;
+        case Need::Kind::slot:
             return accept_hit(packet, place, now);
-        case Visit::Event::reaches_source:
-            return end_ray(packet, place, Answer::Kind::lit, dvec3(0), now);
-        case Visit::Event::leaves_cube:
-            if (beyond_face(env_.context, face_of_depth(ray)) == Beyond::nothing) {
-                const bool ended =
-                    end_ray(packet, place, is_shadow(ray.kind) ? Answer::Kind::lit : Answer::Kind::intensity,
-                            env_.context.background, now);
-                env_.counters.rays.lost += ended;
-                return ended;
-            }
+        case Need::Kind::shading_unit:
+            return accept_direct(packet, place, now);
+        case Need::Kind::border_walk:
             start_outside(packet.ray, packet.visit.hit.t, env_.context.arithmetic);
             packet.stage = RayPacket::Stage::untested;
             packet.wait = {now, Stall::traversal};
             decided_ &= ~bit_of(place);
             return true;
     }
-    return false;
+    env_.counters.rays.lost += need.lost;
+    return true;
 }
 
 bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     Ray& ray = packet.ray;
-    const Side side = packet.visit.crossing.side;
-    const int x = x_ + step_x(side);
-    const int y = y_ + step_y(side);
-    const bool leaves = x < 0 || x >= env_.width() || y < 0 || y >= env_.height();
-    if (leaves) {
-        const Face face = ray.outside ? face_of_depth(ray) : face_of(side);
-        if (beyond_face(env_.context, face) == Beyond::nothing) {
-            const Answer::Kind kind = is_shadow(ray.kind) ? Answer::Kind::lit : Answer::Kind::intensity;
-            const bool ended = end_ray(packet, place, kind, env_.context.background, now);
-            env_.counters.rays.lost += ended;
-            return ended;
-        }
-    }
-    Link* out = out_[std::size_t(side)];
-    const int index = env_.classes.ray(ray);
-    if (!out->can_send(index, next_)) {
-        const bool full = out->room(index) == Link::Room::full;
+    const Need need = packet.need;
+    Link* out = out_[std::size_t(need.side)];
+    if (!out->can_send(need.index, next_)) {
+        const bool full = out->room(need.index) == Link::Room::full;
         cause_ = full ? Stall::output_full : Stall::output_busy;
-        if (full && out->sender_waits(index)) park(bit_of(place), std::size_t(side));
+        if (full && out->sender_waits(need.index)) park(bit_of(place), std::size_t(need.side));
         return false;
     }
     remove_from(place);
     const int cycles = is_shadow(ray.kind) ? env_.cycles.shadow_ray : env_.cycles.ray;
-    if (leaves) {
+    if (need.leaves) {
         ++env_.counters.rays.exterior;
         ++env_.counters.rays.return_hops;  // the border link, counted with its way back
         ++statistics_.return_hops;
@@ -436,33 +418,36 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     }
     if (env_.phase == Phase::trace) ++env_.pixel_hops[pixel_of(ray.id)];
     ++packet.hops;
-    out->send(index, Message(&packet), cycles);
-    record_send(now, side, index, ray.id);
+    out->send(need.index, Message(&packet), cycles);
+    record_send(now, need.side, need.index, ray.id);
     return true;
 }
 
-bool Cell::end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now) {
-    if (packet.ray.kind == RayKind::precast && kind == Answer::Kind::lit) {
-        ++env_.counters.rays_silent;  // no news is good news
-        tell(now, CellEvent::silent, packet.ray.id, 0);
-        env_.counters.last_progress = now;
+/// The ray ends in an answer; false if that can't leave yet.
+bool Cell::respond(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now) {
+    Answer answer = answer_to(packet.ray, kind);
+    answer.colour = colour;
+    if (!send_answer(answer, now)) return false;
+    if (kind == Answer::Kind::postponed) {
+        ++env_.counters.rays_destroyed;
+        env_.ledger.add(packet, x_, y_, now);
+        if (env_.phase == Phase::trace) ++env_.picture.pixels[pixel_of(packet.ray.id)].postponed;
+        ++statistics_.postponed;
+        record(now, CellEvent::postpone, std::uint32_t(packet.ray.id), packet.ray.id, 0);
     } else {
-        Answer answer = answer_to(packet.ray, kind);
-        answer.colour = colour;
-        if (!send_answer(answer, now)) return false;
-        if (kind == Answer::Kind::postponed) {
-            ++env_.counters.rays_destroyed;
-            env_.ledger.add(packet, x_, y_, now);
-            if (env_.phase == Phase::trace) ++env_.picture.pixels[pixel_of(packet.ray.id)].postponed;
-            ++statistics_.postponed;
-            record(now, CellEvent::postpone, std::uint32_t(packet.ray.id), packet.ray.id, 0);
-        } else {
-            ++env_.counters.rays_answered;
-        }
+        ++env_.counters.rays_answered;
     }
     remove_from(place);
     env_.pools.rays.give_back(&packet);
     return true;
+}
+
+void Cell::end_silently(RayPacket& packet, std::size_t place, Cycle now) {
+    ++env_.counters.rays_silent;
+    tell(now, CellEvent::silent, packet.ray.id, 0);
+    env_.counters.last_progress = now;
+    remove_from(place);
+    env_.pools.rays.give_back(&packet);
 }
 
 bool Cell::busy() const {

@@ -159,9 +159,8 @@ class alignas(64) Cell final : public Client {
     void try_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool move_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool forward(RayPacket& packet, std::size_t place, Cycle now);
-    /// What a ray does that does not go on to a neighbour.
-    bool finish_ray(RayPacket& packet, std::size_t place, Cycle now);
-    bool end_ray(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
+    bool respond(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
+    void end_silently(RayPacket& packet, std::size_t place, Cycle now);
     bool send_answer(const Answer& answer, Cycle now);
     HeadStall stall_of_answer(const Answer& answer, Cycle now) const;
     Side route(const Answer& answer) const;
@@ -169,6 +168,7 @@ class alignas(64) Cell final : public Client {
     void move_overdue(Cycle now);
     // cell_shade.cpp: slots, own rays, shading unit
     bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
+    bool accept_direct(RayPacket& packet, std::size_t place, Cycle now);
     void deliver(const Answer& answer, Cycle now);
     void deliver_to_slot(const Answer& answer, Cycle now);
     void feed_children(Cycle now);

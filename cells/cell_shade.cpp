@@ -203,16 +203,6 @@ bool Cell::slot_complete() const {
 }
 
 bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
-    const std::uint32_t object = store_.voxels[packet.visit.hit.voxel].object;
-    if (!may_wait(env_.context, packet.ray, object)) {
-        if (shading_.job != Shading::Job::idle || slot_complete()) {
-            cause_ = Stall::shading;
-            return false;
-        }
-        remove_from(place);
-        begin_direct(packet, now);
-        return true;
-    }
     if (store_port_ == now) {
         want(now + 1);
         cause_ = Stall::store_port;
@@ -224,7 +214,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
             cause_ = Stall::no_slot;
             return false;
         }
-        return end_ray(packet, place, Answer::Kind::postponed, dvec3(0), now);
+        return respond(packet, place, Answer::Kind::postponed, dvec3(0), now);
     }
     // Before the slot is filled: a child that hits its own cell comes from a slot of this same store.
     remove_from(place);
@@ -237,6 +227,17 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     slot_changed();
     ++env_.counters.slots_used;
     record(now, CellEvent::accept, std::uint32_t(packet.ray.id), packet.ray.id, *index);
+    return true;
+}
+
+/// A hit that waits for nothing needs no slot.
+bool Cell::accept_direct(RayPacket& packet, std::size_t place, Cycle now) {
+    if (shading_.job != Shading::Job::idle || slot_complete()) {
+        cause_ = Stall::shading;
+        return false;
+    }
+    remove_from(place);
+    begin_direct(packet, now);
     return true;
 }
 

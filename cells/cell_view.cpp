@@ -34,28 +34,26 @@ HeadStall stall_of_output(Link::Room room) {
 HeadStall Cell::stall_of(const RayPacket& packet, Cycle now) const {
     if (packet.stage == RayPacket::Stage::in_test) return HeadStall::none;
     if (packet.stage == RayPacket::Stage::untested) return HeadStall::traversal_unit;
-    const Ray& ray = packet.ray;
     // Only where the answer goes matters here.
-    const auto answer = [&] { return stall_of_answer(answer_to(ray, Answer::Kind::intensity), now); };
-    if (packet.visit.event == Visit::Event::forward) {
-        const Side side = packet.visit.crossing.side;
-        const int x = x_ + step_x(side);
-        const int y = y_ + step_y(side);
-        const bool leaves = x < 0 || x >= env_.width() || y < 0 || y >= env_.height();
-        const Face face = ray.outside ? face_of_depth(ray) : face_of(side);
-        if (leaves && beyond_face(env_.context, face) == Beyond::nothing) return answer();
-        return stall_of_output(out_[std::size_t(side)]->room(env_.classes.ray(ray)));
+    const auto answer = [&] { return stall_of_answer(answer_to(packet.ray, Answer::Kind::intensity), now); };
+    switch (packet.need.kind) {
+        case Need::Kind::output:
+            return stall_of_output(out_[std::size_t(packet.need.side)]->room(packet.need.index));
+        case Need::Kind::response:
+            return answer();
+        case Need::Kind::shading_unit:
+            return shading_.job != Shading::Job::idle || slot_complete() ? HeadStall::shading_unit
+                                                                         : HeadStall::none;
+        case Need::Kind::slot:
+            // Slots are only taken through the port: a ray that the port held back had one, if there is one.
+            if (!ray_store_.has_room(packet.ray.generation))
+                return env_.machine.recovery == Recovery::none ? HeadStall::no_slot : answer();
+            return store_port_ == now ? HeadStall::store_port : HeadStall::none;
+        case Need::Kind::nothing:
+        case Need::Kind::border_walk:
+            break;
     }
-    if (packet.visit.event != Visit::Event::hit || is_shadow(ray.kind)) return answer();
-    if (!may_wait(env_.context, ray, store_.voxels[packet.visit.hit.voxel].object)) {
-        return shading_.job != Shading::Job::idle || slot_complete() ? HeadStall::shading_unit
-                                                                     : HeadStall::none;
-    }
-    // Slots are only taken through the port: a ray that the port held back had a slot, if there is one now.
-    if (!ray_store_.has_room(ray.generation)) {
-        return env_.machine.recovery == Recovery::none ? HeadStall::no_slot : answer();
-    }
-    return store_port_ == now ? HeadStall::store_port : HeadStall::none;
+    return HeadStall::none;
 }
 
 HeadStall Cell::stall_of(const Link& in, int index, Cycle now) const {

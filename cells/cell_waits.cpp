@@ -138,37 +138,23 @@ Wants Cell::wants_shading(const WaitMap& map) const {
     return unit ? Wants{false, false, {*unit}, "the shading unit"} : Wants::nothing("the shading unit");
 }
 
-/// A tested ray: the cases of move_ray().
 Wants Cell::wants_ray(const WaitMap& map, const RayPacket& packet) const {
-    const Ray& ray = packet.ray;
     if (packet.stage != RayPacket::Stage::decided) return Wants::nothing("the traversal unit");
-    const Answer::Kind lit = is_shadow(ray.kind) ? Answer::Kind::lit : Answer::Kind::intensity;
-    const auto end = [&](Answer::Kind kind) {
-        const bool silent = ray.kind == RayKind::precast && kind == Answer::Kind::lit;
-        return silent ? Wants::nothing("nothing: it ends") : wants_answer_way(map, answer_to(ray, kind));
-    };
-    switch (packet.visit.event) {
-        case Visit::Event::hit:
-            if (is_shadow(ray.kind)) return end(Answer::Kind::blocked);
-            return may_wait(env_.context, ray, store_.voxels[packet.visit.hit.voxel].object)
-                       ? wants_slot(map, ray)
-                       : wants_shading(map);
-        case Visit::Event::reaches_source:
-            return end(Answer::Kind::lit);
-        case Visit::Event::leaves_cube:
-            if (beyond_face(env_.context, face_of_depth(ray)) == Beyond::nothing) return end(lit);
+    switch (packet.need.kind) {
+        case Need::Kind::output:
+            return wants_output(map, packet.need.side, packet.need.index);
+        case Need::Kind::response:
+            return wants_answer_way(map, answer_to(packet.ray, packet.need.answer));
+        case Need::Kind::slot:
+            return wants_slot(map, packet.ray);
+        case Need::Kind::shading_unit:
+            return wants_shading(map);
+        case Need::Kind::border_walk:
             return Wants::nothing("its way to the border");
-        case Visit::Event::forward:
+        case Need::Kind::nothing:
             break;
     }
-    const Side side = packet.visit.crossing.side;
-    const int x = x_ + step_x(side);
-    const int y = y_ + step_y(side);
-    if (x < 0 || x >= env_.width() || y < 0 || y >= env_.height()) {
-        const Face face = ray.outside ? face_of_depth(ray) : face_of(side);
-        if (beyond_face(env_.context, face) == Beyond::nothing) return end(lit);
-    }
-    return wants_output(map, side, env_.classes.ray(ray));
+    return Wants::nothing("nothing: it ends");
 }
 
 /// All that a waiting slot still lacks; what is between places (a back-off) comes by itself.

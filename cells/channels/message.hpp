@@ -5,6 +5,7 @@
 #include "cells/memory/pool.hpp"
 #include "model/loading/span.hpp"
 #include "model/machine/message.hpp"
+#include "model/machine/need.hpp"
 #include "model/tracing/tracing.hpp"
 
 namespace raycell {
@@ -15,6 +16,7 @@ struct alignas(64) RayPacket {
     Ray ray;
     Visit visit;
     Stage stage = Stage::untested;
+    Need need;                  ///< once it has been tested
     std::uint32_t hops = 0;     ///< since it was put on its way
     std::uint64_t decided = 0;  ///< cycle in which the test was over
     Wait wait;
