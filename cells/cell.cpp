@@ -15,8 +15,6 @@ Cell::Cell(Environment& environment, int x, int y)
       answer_moved_(false),
       moved_(false),
       blocked_(false),
-      root_waits_(false),
-      root_to_send_(false),
       ray_store_(environment.machine.ray_store, waiting_generations(environment.context),
                  environment.machine.slots) {}
 
@@ -45,23 +43,22 @@ void Cell::begin_phase() {
     if (env_.context.settings.shadows == Shadows::memo && env_.phase == Phase::trace) {
         asked_.assign(store_.voxels.size(), 0);
     }
-    root_to_send_ = env_.phase == Phase::trace;
-    precast_next_ = 0;
+    injector_.begin_phase(env_.phase == Phase::trace);
 }
 
 Cycle Cell::step(Cycle now) {
-    next_ = never;
+    wakeup_ = Wakeup();
     moved_ = blocked_ = answer_moved_ = false;
     if (env_.phase == Phase::load) {
         step_load(now);
-        return next_;
+        return wakeup_.next;
     }
     if (room_made_) unpark(now);
     // Most steps have few of these to do; what there is nothing for is not called.
-    if (traversal_.packet) finish_traversal(now);
-    if (shading_.job != Shading::Job::idle) finish_shading(now);
+    if (traversal_.packet()) finish_traversal(now);
+    if (!shading_.idle()) finish_shading(now);
     answers_moved_ = 0;
-    if (now >= look_for_overdue_) move_overdue(now);
+    if (aging_.due(now)) move_overdue(now);
     // Replies of this cell and answers that pass through take turns when both want to go.
     if (replies_first_) {
         if (has_replies()) move_replies(now);
@@ -70,17 +67,17 @@ Cycle Cell::step(Cycle now) {
         if (answers_to_move()) move_answers(now);
         if (has_replies()) move_replies(now);
     }
-    if (!own_ && (root_to_send_ || env_.phase == Phase::precast)) feed_own(now);
+    if (!injector_.ray() && (injector_.primary_to_send() || env_.phase == Phase::precast)) feed_own(now);
     if (now >= feed_at_) {
         feed_children(now);
     } else if (!env_.draining) {
         want(feed_at_);
     }
     move_rays(now);
-    if (!traversal_.packet) start_traversal(now);
-    if (look_to_shade_ && shading_.job == Shading::Job::idle) start_shading(now);
+    if (!traversal_.packet()) start_traversal(now);
+    if (look_to_shade_ && shading_.idle()) start_shading(now);
     time_out_.step(moved_, blocked_ || parked_, now, env_.wait_counts);
-    return next_;
+    return wakeup_.next;
 }
 
 void Cell::unpark(Cycle now) {
@@ -91,7 +88,7 @@ void Cell::unpark(Cycle now) {
         bits = 0;
     }
     parked_ &= ~unparked;
-    if (overdue_parked_ & (unparked | any_bit)) look_for_overdue_ = std::min(look_for_overdue_, now);
+    aging_.unparked(unparked, now);
 }
 
 void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail) {
@@ -110,7 +107,7 @@ RayPacket* Cell::packet_at(std::size_t place) const {
         const Message* message = in_[std::size_t(input.side)]->head_at(input.place, env_.scheduler.now());
         return message && message->kind == Message::Kind::ray ? message->ray : nullptr;
     }
-    if (place == ray_input_count_) return own_;
+    if (place == ray_input_count_) return injector_.ray();
     return ray_store_[std::uint32_t(place - ray_input_count_ - 1)].child;
 }
 
@@ -125,12 +122,11 @@ void Cell::remove_from(std::size_t place) {
         if (link.occupancy_at(input.place) == 0) return;
         want(now + 1);
         // An answer that stood behind the ray may have waited for longer than anybody has.
-        if (env_.classes.count == 1)
-            look_for_overdue_ = std::min(look_for_overdue_, (now / epoch + 1) * epoch);
+        if (env_.classes.count == 1) aging_.new_head(now);
         return;
     }
     if (place == ray_input_count_) {
-        own_ = nullptr;
+        injector_.left();
     } else {
         Slot& slot = ray_store_[std::uint32_t(place - ray_input_count_ - 1)];
         slot.child = nullptr;
@@ -148,14 +144,7 @@ std::uint32_t Cell::unit_cycles(std::uint32_t cycles) {
 }
 
 void Cell::finish_traversal(Cycle now) {
-    if (now < traversal_.done) {
-        want(traversal_.done);
-        return;
-    }
-    traversal_.packet->stage = RayPacket::Stage::decided;
-    traversal_.packet->decided = now;
-    decided_ |= bit_of(traversal_.place);
-    traversal_.packet = nullptr;
+    if (traversal_.finish(now, wakeup_)) decided_ |= bit_of(traversal_.place());
 }
 
 /// The next untested ray, round robin over the places.
@@ -163,10 +152,11 @@ void Cell::start_traversal(Cycle now) {
     const std::size_t slots = slot_places();
     std::uint32_t inputs = occupied() & ~decided_;
     if (inputs == 0 && slots == 0) return;
-    // Places of slots come last, so the round is: inputs from next_test_ on, slots, inputs before it. How
+    // Places of slots come last, so the round is: inputs from next() on, slots, inputs before it. How
     // many they are is another line of memory.
     const std::size_t first_slot = ray_input_count_ + std::size_t(1);
-    const std::size_t start = next_test_ < first_slot || next_test_ < place_count() ? next_test_ : 0;
+    const std::size_t next = traversal_.next();
+    const std::size_t start = next < first_slot || next < place_count() ? next : 0;
     const std::uint32_t before = start < first_slot ? inputs & ((1U << start) - 1) : inputs;
     for (inputs &= ~before; inputs; inputs &= inputs - 1) {
         if (test_at(std::size_t(__builtin_ctz(inputs)), now)) return;
@@ -187,24 +177,19 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     if (!packet || packet->stage != RayPacket::Stage::untested) return false;
     settle(wait_of(*packet, place), packet->ray.id, now);
     packet->wait.cause = Stall::none;
-    packet->visit = visit_cell(store_, packet->ray, env_.context, runs_, run_count_);
-    packet->need = need_of(packet->ray, packet->visit, store_, x_, y_, env_.classes, env_.context);
-    packet->stage = RayPacket::Stage::in_test;
+    const std::uint32_t cycles = unit_cycles(TraversalUnit::test(
+        *packet, {store_, runs_, run_count_, env_.context, env_.classes, x_, y_}, env_.costs()));
     env_.counters.rays.ties += packet->visit.event == Visit::Event::hit && packet->visit.hit.tied;
-    const std::uint32_t cycles =
-        unit_cycles(packet->ray.outside ? env_.costs().walk_step
-                                        : visit_cycles(packet->visit, env_.settings, env_.costs()));
     env_.counters.traversal_cycles += cycles;
     statistics_.traversal_cycles += cycles;
-    traversal_ = {packet, now + cycles, std::uint32_t(place)};
-    next_test_ = std::uint32_t(place + 1);
+    traversal_.start(*packet, std::uint32_t(place), now + cycles);
     if (place <= ray_input_count_) {
         const Need& need = packet->need;
         ways_[place] = Way(need.kind == Need::Kind::output ? int(need.side) : no_way, need.index);
     }
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
            std::uint32_t(packet->visit.event));
-    want(traversal_.done);
+    want(traversal_.done());
     return true;
 }
 
@@ -229,7 +214,7 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
         return true;
     }
     Link* out = out_[std::size_t(route(answer))];
-    if (!out->can_send(env_.classes.answer, next_)) {
+    if (!out->can_send(env_.classes.answer, wakeup_.next)) {
         cause_ = out->room(env_.classes.answer) == Link::Room::full ? Stall::answer_full : Stall::answer_busy;
         return false;
     }
@@ -295,7 +280,7 @@ void Cell::move_answer(std::size_t from, Cycle now) {
     } else {
         const Side way = route(*answer);
         Link* out = out_[std::size_t(way)];
-        if (!out->can_send(index, next_)) {
+        if (!out->can_send(index, wakeup_.next)) {
             blocked_ = true;
             const bool full = out->room(index) == Link::Room::full;
             stall(wait, full ? Stall::answer_full : Stall::answer_busy, id, now);
@@ -317,7 +302,7 @@ void Cell::move_answer(std::size_t from, Cycle now) {
     pending_ &= ~in.pop_at(place, now);
     if (in.occupancy_at(place) == 0) return;
     want(now + 1);
-    if (overdue_parked_) overdue_parked_ |= any_bit;  // what has come to the head may be older than its epoch
+    aging_.new_answer();
 }
 
 void Cell::move_rays(Cycle now) {
@@ -398,7 +383,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     Ray& ray = packet.ray;
     const Need need = packet.need;
     Link* out = out_[std::size_t(need.side)];
-    if (!out->can_send(need.index, next_)) {
+    if (!out->can_send(need.index, wakeup_.next)) {
         const bool full = out->room(need.index) == Link::Room::full;
         cause_ = full ? Stall::output_full : Stall::output_busy;
         if (full && out->sender_waits(need.index)) park(bit_of(place), std::size_t(need.side));
@@ -451,8 +436,7 @@ void Cell::end_silently(RayPacket& packet, std::size_t place, Cycle now) {
 }
 
 bool Cell::busy() const {
-    return traversal_.packet || shading_.job != Shading::Job::idle || ray_store_.used() > 0 || own_ ||
-           root_waits_ || root_to_send_;
+    return traversal_.packet() || !shading_.idle() || ray_store_.used() > 0 || injector_.unfinished();
 }
 
 }  // namespace raycell

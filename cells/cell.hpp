@@ -12,8 +12,13 @@
 #include "cells/deadlock/wait_map.hpp"
 #include "cells/environment.hpp"
 #include "cells/memory/fetch_line.hpp"
+#include "cells/units/aging_arbiter.hpp"
+#include "cells/units/injector.hpp"
+#include "cells/units/loading_unit.hpp"
 #include "cells/units/ray_store.hpp"
+#include "cells/units/shading_unit.hpp"
 #include "cells/units/time_out.hpp"
+#include "cells/units/traversal_unit.hpp"
 
 namespace raycell {
 
@@ -96,7 +101,7 @@ class alignas(64) Cell final : public Client {
     Link* input(Side side) const { return in_[std::size_t(side)]; }
     Link* output(Side side) const { return out_[std::size_t(side)]; }
     Link* load_input() const { return load_in_; }
-    const RayPacket* own_ray() const { return own_; }
+    const RayPacket* own_ray() const { return injector_.ray(); }
     /// What the oldest message of a buffer waits for; `in` is one of the cell's inputs.
     HeadStall stall_of(const Link& in, int index, Cycle now) const;
     /// What a ray that stands in this cell waits for: in a buffer, the own ray or a slot's child.
@@ -119,27 +124,9 @@ class alignas(64) Cell final : public Client {
     };
     static_assert(sizeof(RayInput) == 1 && Link::most_classes < 8);
     static constexpr std::size_t most_ray_inputs = 8;
-    struct Traversal {
-        RayPacket* packet = nullptr;
-        Cycle done = 0;
-        std::uint32_t place = 0;
-    };
-    struct Shading {
-        enum class Job : std::uint8_t { idle, set_up, shade, direct, direct_answer };
-        Job job = Job::idle;
-        std::uint32_t slot = 0;
-        Cycle done = 0;
-    };
-    /// A hit that waits for nothing needs no slot.
-    struct DirectHit {
-        RayPacket* packet = nullptr;
-        dvec3 result{0, 0, 0};
-    };
 
     // cell_load.cpp
     void step_load(Cycle now);
-    bool drops(const LoadItem& item) const;
-    void take_load(LoadItem& item);
     // cell.cpp: traversal and routing
     void finish_traversal(Cycle now);
     void start_traversal(Cycle now);
@@ -174,8 +161,12 @@ class alignas(64) Cell final : public Client {
     void feed_children(Cycle now);
     void feed_own(Cycle now);
     RayPacket* next_child(Slot& slot, std::uint32_t index, Cycle now);
-    bool complete(const Slot& slot) const;
-    bool slot_complete() const;
+    bool complete(const Slot& slot) const {
+        return ShadingUnit::complete(slot, store_, env_.settings.shadows);
+    }
+    bool slot_complete() const {
+        return ShadingUnit::any_complete(ray_store_, store_, env_.settings.shadows);
+    }
     bool has_replies() const { return replies_ > 0; }
     void finish_shading(Cycle now);
     void start_shading(Cycle now);
@@ -183,7 +174,6 @@ class alignas(64) Cell final : public Client {
     void begin_set_up(std::uint32_t index, Cycle now);
     void begin_direct(RayPacket& packet, Cycle now);
     void release_slot(std::uint32_t index, Cycle now);
-    Cycle backoff(std::uint64_t id, unsigned attempt) const;
     RayPacket* launch(const Ray& ray, const Ray* parent);
 
     // cell_statistics.cpp: what waits, and for what
@@ -219,7 +209,8 @@ class alignas(64) Cell final : public Client {
     bool local(const Answer& a) const { return a.home_x == x_ && a.home_y == y_; }
     /// Cycles of a unit's operation, with its random stalls.
     std::uint32_t unit_cycles(std::uint32_t cycles);
-    void want(Cycle cycle) { next_ = std::min(next_, cycle); }
+    void want(Cycle cycle) { wakeup_.at(cycle); }
+    void use_shading_unit(ShadingUnit::Job job, std::uint32_t slot, std::uint32_t cycles, Cycle now);
     /// Into the schedule's hash, `hashed`, and to whoever watches.
     void record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail);
     void record_send(Cycle now, Side side, int index, std::uint64_t ray) {
@@ -241,7 +232,7 @@ class alignas(64) Cell final : public Client {
     /// Bit per place that may hold a ray: inputs and the own ray.
     std::uint32_t occupied() const {
         const std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1);
-        return inputs | std::uint32_t(own_ != nullptr) << ray_input_count_;
+        return inputs | std::uint32_t(injector_.ray() != nullptr) << ray_input_count_;
     }
     bool test_at(std::size_t place, Cycle now);
     /// The bit of an input or of the own ray in the words below; 0 for a slot's place.
@@ -254,7 +245,7 @@ class alignas(64) Cell final : public Client {
         parked_on_[side] |= std::uint16_t(bits);
     }
     void unpark(Cycle now);
-    std::uint32_t bit_in_test() const { return traversal_.packet ? bit_of(traversal_.place) : 0; }
+    std::uint32_t bit_in_test() const { return traversal_.packet() ? bit_of(traversal_.place()) : 0; }
     static constexpr int no_way = 15;
     /// The output that a decided ray at this place wants, for fetch_links(): side and class.
     struct Way {
@@ -270,12 +261,9 @@ class alignas(64) Cell final : public Client {
         fetch_line(reinterpret_cast<const char*>(this) + env_.neighbours[side]);
     }
 
-    /// Cycles that a message which waits to move is passed over by others; after that it goes before all of
-    /// them, oldest first. Without it a stream of notices can starve what would end it (deadlock.md, step 5).
-    static constexpr Cycle patience = 65536;
-    static constexpr Cycle epoch = patience / 8;  ///< ages are counted in these
     static constexpr unsigned answer_bits = 12;
-    static constexpr std::uint32_t any_bit = 1U << (answer_bits - 1);  ///< in overdue_parked_: perhaps others
+    static_assert(most_ray_inputs + 1 < answer_bits &&
+                  AgingArbiter::others == 1U << (answer_bits - 1));  // a bit that no place has
 
     // By cache lines: what every step looks at comes first, `hot_lines` of it; what few cells or reports
     // need, last. Words of bits have a bit per place: ray inputs from 0, the own ray after them, answers by
@@ -283,39 +271,33 @@ class alignas(64) Cell final : public Client {
     static constexpr std::size_t hot_lines = 6;
     Environment& env_;
     CellHost* host_ = nullptr;
-    Cycle next_ = never;
+    Wakeup wakeup_;
     std::uint16_t x_;
     std::uint16_t y_;
     // pending_: buffers that hold anything, arrived or on the wires. room_made_: a bit per output behind
     // which room was made since somebody parked on it. Both are the client's.
     std::uint32_t decided_ = 0;  ///< rays whose test is over
 
-    std::uint32_t parked_ = 0;     ///< rays and answers that wait for room behind an output
-    std::uint32_t next_test_ = 0;  ///< round robin over places
-    Traversal traversal_;
-    RayPacket* own_ = nullptr;    ///< primary or precast ray on its way out
-    Cycle feed_at_ = never;       ///< cycle from which on a slot may have a child to send
+    TraversalUnit traversal_;
+    Cycle feed_at_ = never;  ///< cycle from which on a slot may have a child to send
+    AgingArbiter aging_;
+    std::uint32_t parked_ = 0;    ///< rays and answers that wait for room behind an output
     std::uint16_t replies_ = 0;   ///< answers of slots and of the shading unit that want to go
     std::uint16_t children_ = 0;  ///< on their way out of slots
     std::uint8_t ray_input_count_ = 0;
-    std::uint8_t own_attempts_ = 0;
-    std::uint8_t answers_moved_ = 0;    ///< bit per side whose buffer of answers was read in this cycle
-    Stall cause_ = Stall::none;         ///< why the last attempt to move something failed
-    bool look_to_shade_ : 1;            ///< a slot may have work for the shading unit
-    bool replies_first_ : 1;            ///< replies go before answers that came in, which went last
-    bool answer_moved_ : 1;             ///< this cycle: an answer left an input
-    bool moved_ : 1;                    ///< this cycle: something went on, or came home
-    bool blocked_ : 1;                  ///< this cycle: something wanted to and could not
-    bool root_waits_ : 1;               ///< the pixel's intensity is still to come
-    bool root_to_send_ : 1;             ///< for the first time or again
-    std::uint16_t overdue_parked_ = 0;  ///< parked when overdue messages were looked for, and overdue
-    std::uint32_t run_count_ = 0;
+    std::uint8_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
+    Stall cause_ = Stall::none;       ///< why the last attempt to move something failed
+    bool look_to_shade_ : 1;          ///< a slot may have work for the shading unit
+    bool replies_first_ : 1;          ///< replies go before answers that came in, which went last
+    bool answer_moved_ : 1;           ///< this cycle: an answer left an input
+    bool moved_ : 1;                  ///< this cycle: something went on, or came home
+    bool blocked_ : 1;                ///< this cycle: something wanted to and could not
 
     const DepthRun* runs_ = nullptr;  ///< of the voxels, once they are all there
+    std::uint32_t run_count_ = 0;
+    std::array<std::uint8_t, side_count> answer_places_{};  ///< of answers' buffers in the links
     Fnv hash_{0};
     Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
-    Cycle look_for_overdue_ =
-        patience;  ///< cycle from which on to look for messages that waited for too long
     TimeOut time_out_;
     std::array<std::uint16_t, side_count> parked_on_{};  ///< parked, by output; some may have left since
     std::array<RayInput, most_ray_inputs> ray_inputs_{};
@@ -323,24 +305,19 @@ class alignas(64) Cell final : public Client {
     std::array<Link*, side_count> in_{};
     std::array<Link*, side_count> out_{};
 
-    std::array<Wait, side_count> answer_waits_{};           ///< of the oldest answer at each side
-    std::array<std::uint8_t, side_count> answer_places_{};  ///< of their buffers in the links
-    std::array<Way, most_ray_inputs + 1> ways_;             ///< by place, of inputs and the own ray
-    Shading shading_;
+    std::array<Wait, side_count> answer_waits_{};  ///< of the oldest answer at each side
+    std::array<Way, most_ray_inputs + 1> ways_;    ///< by place, of inputs and the own ray
+    Injector injector_;
+    ShadingUnit shading_;
 
     CellStatistics statistics_;  // its first line is the last hot one
 
-    DirectHit direct_;
-    Wait direct_wait_;  ///< of the answer that stands in the shading unit
     CellStore store_;
     RayStore ray_store_;
-    Cycle own_at_ = 0;
     std::uint64_t operations_ = 0;      ///< of the units, for their random stalls
-    std::uint64_t precast_next_ = 0;    ///< voxel · sources + source
     std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
+    LoadingUnit loading_;
     Link* load_in_ = nullptr;
-    LoadItem* load_item_ = nullptr;
-    Cycle load_done_ = 0;
 };
 
 /// Adds the buffer of a class at the end of a link, if it holds anything.

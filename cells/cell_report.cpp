@@ -48,9 +48,9 @@ std::vector<std::string> Cell::describe_blocked() const {
                              ? ", is home"
                              : std::string(", waits for the output ") + name_of(route(*message.answer))));
     }
-    if (own_) {
-        lines.push_back(at + "own ray since cycle " + std::to_string(own_->decided) + ": " +
-                        describe_ray(*own_));
+    if (const RayPacket* own = injector_.ray()) {
+        lines.push_back(at + "own ray since cycle " + std::to_string(own->decided) + ": " +
+                        describe_ray(*own));
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];

@@ -4,24 +4,6 @@
 #include "cells/cell.hpp"
 
 namespace raycell {
-namespace {
-
-constexpr std::uint8_t most_attempts = 250;
-
-std::uint64_t jitter(std::uint64_t seed, std::uint64_t id, std::uint64_t attempt) {
-    std::uint64_t h =
-        seed * 0x9e3779b97f4a7c15ULL ^ id * 0xbf58476d1ce4e5b9ULL ^ attempt * 0x94d049bb133111ebULL;
-    h ^= h >> 31;
-    h *= 0x7fb5d329728ea185ULL;
-    return h ^ h >> 27;
-}
-
-}  // namespace
-
-Cycle Cell::backoff(std::uint64_t id, unsigned attempt) const {
-    const Cycle base = env_.costs().backoff << std::min(attempt, 6U);
-    return base + jitter(env_.machine.seed, id, attempt) % base;
-}
 
 RayPacket* Cell::launch(const Ray& ray, const Ray* parent) {
     RayPacket* packet = env_.pools.rays.take();
@@ -47,15 +29,13 @@ void Cell::deliver(const Answer& answer, Cycle now) {
     switch (answer.ray_kind) {
         case RayKind::primary: {
             if (answer.kind == Answer::Kind::postponed) {
-                root_to_send_ = true;
-                own_at_ = now + backoff(answer.id, own_attempts_);
-                own_attempts_ = std::uint8_t(std::min<int>(own_attempts_ + 1, most_attempts));
+                injector_.primary_postponed(env_.machine, answer.id, now);
                 return;
             }
             Pixel& pixel = env_.picture.at(x_, y_);
             pixel.colour = answer.colour;
             pixel.cycle = std::uint32_t(now - env_.phase_start);
-            root_waits_ = false;
+            injector_.primary_answered();
             ++env_.counters.pixels_done;
             return;
         }
@@ -93,8 +73,7 @@ void Cell::deliver_to_slot(const Answer& answer, Cycle now) {
     const std::size_t child = answer.child;
     if (answer.kind == Answer::Kind::postponed) {
         slot.send_child[child] = true;
-        slot.send_at[child] = now + backoff(answer.id, slot.attempts[child]);
-        slot.attempts[child] = std::uint8_t(std::min<int>(slot.attempts[child] + 1, most_attempts));
+        slot.retry[child].postponed(env_.machine, answer.id, now);
         return;
     }
     slot.await_child[child] = false;
@@ -107,28 +86,20 @@ void Cell::deliver_to_slot(const Answer& answer, Cycle now) {
 void Cell::feed_own(Cycle now) {
     if (env_.draining) return;
     if (env_.phase == Phase::precast) {
-        const std::uint64_t sources = env_.context.scene.sources.size();
-        if (precast_next_ >= store_.voxels.size() * sources) return;
-        const std::uint32_t voxel = std::uint32_t(precast_next_ / sources);
-        own_ = launch(voxel_shadow_ray(env_.context, store_, voxel, std::size_t(precast_next_ % sources),
-                                       RayKind::precast, x_, y_),
-                      nullptr);
-        ++precast_next_;
+        const auto next = injector_.next_precast(store_.voxels.size(), env_.context.scene.sources.size());
+        if (!next) return;
+        injector_.load(*launch(
+            voxel_shadow_ray(env_.context, store_, next->voxel, next->source, RayKind::precast, x_, y_),
+            nullptr));
         ++env_.counters.rays.precast;
         return;
     }
-    if (!root_to_send_) return;
-    if (now < own_at_) {
-        want(own_at_);
-        return;
-    }
-    if (!root_waits_) {
+    if (!injector_.primary_due(now, wakeup_)) return;
+    if (injector_.primary_sent()) {
         ++env_.counters.rays.primary;
         record_background(env_.picture.at(x_, y_));
     }
-    own_ = launch(primary_ray(env_.context, x_, y_), nullptr);
-    root_to_send_ = false;
-    root_waits_ = true;
+    injector_.load(*launch(primary_ray(env_.context, x_, y_), nullptr));
 }
 
 void Cell::feed_children(Cycle now) {
@@ -169,13 +140,14 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
     }
     for (std::size_t child = 0; child < 2; ++child) {
         if (!slot.send_child[child]) continue;
-        if (now < slot.send_at[child]) {
-            want(slot.send_at[child]);
-            feed_at_ = std::min(feed_at_, slot.send_at[child]);
+        const Retry& retry = slot.retry[child];
+        if (now < retry.at()) {
+            want(retry.at());
+            feed_at_ = std::min(feed_at_, retry.at());
             continue;
         }
         slot.send_child[child] = false;
-        if (slot.attempts[child] == 0)
+        if (retry.attempts() == 0)
             ++(child == 0 ? env_.counters.rays.reflected : env_.counters.rays.refracted);
         Ray ray = child == 0 ? reflected_ray(env_.context, store_, parent, hit, slot.setup, x_, y_)
                              : refracted_ray(env_.context, store_, parent, hit, slot.setup, x_, y_);
@@ -187,20 +159,6 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
 
 // ---- shading unit
 // --------------------------------------------------------------------------------------------
-
-bool Cell::complete(const Slot& slot) const {
-    if (slot.state != Slot::State::waiting || slot.child || slot.to_ask || slot.awaited) return false;
-    if (slot.send_child[0] || slot.send_child[1] || slot.await_child[0] || slot.await_child[1]) return false;
-    if (env_.context.settings.shadows != Shadows::memo) return true;
-    return (slot.setup.facing & ~store_.known[slot.packet->visit.hit.voxel]) == 0;
-}
-
-bool Cell::slot_complete() const {
-    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
-        if (complete(ray_store_[i])) return true;
-    }
-    return false;
-}
 
 bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     if (store_port_ == now) {
@@ -232,7 +190,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
 
 /// A hit that waits for nothing needs no slot.
 bool Cell::accept_direct(RayPacket& packet, std::size_t place, Cycle now) {
-    if (shading_.job != Shading::Job::idle || slot_complete()) {
+    if (!shading_.idle() || slot_complete()) {
         cause_ = Stall::shading;
         return false;
     }
@@ -242,99 +200,60 @@ bool Cell::accept_direct(RayPacket& packet, std::size_t place, Cycle now) {
 }
 
 void Cell::start_shading(Cycle now) {
-    // Finish before you begin: a shaded slot is a slot free again. Oldest first among equals.
-    constexpr std::uint32_t none = ~std::uint32_t(0);
-    std::uint32_t shade = none;
-    std::uint32_t set_up = none;
-    for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
-        const Slot& slot = ray_store_[i];
-        if (complete(slot) && (shade == none || slot.since < ray_store_[shade].since)) shade = i;
-        if (slot.state == Slot::State::to_set_up &&
-            (set_up == none || slot.since < ray_store_[set_up].since)) {
-            set_up = i;
+    const auto next = ShadingUnit::choose(ray_store_, store_, env_.settings.shadows);
+    if (!next) {
+        look_to_shade_ = false;
+        return;
+    }
+    Slot& slot = ray_store_[next->slot];
+    const Ray& ray = slot.packet->ray;
+    std::uint32_t cycles = 0;
+    if (next->job == ShadingUnit::Job::shade) {
+        cycles = ShadingUnit::shade(slot, store_, env_.context, env_.costs());
+    } else {
+        cycles = ShadingUnit::set_up(slot, store_, env_.context, env_.costs(), x_, y_);
+        if (ray.kind == RayKind::primary) {
+            record_first_hit(env_.picture.pixels[pixel_of(ray.id)], slot.setup,
+                             store_.voxels[slot.packet->visit.hit.voxel].polygon);
         }
     }
-    if (shade != none) {
-        begin_shade(shade, now);
-    } else if (set_up != none) {
-        begin_set_up(set_up, now);
-    } else {
-        look_to_shade_ = false;
-    }
-}
-
-void Cell::begin_shade(std::uint32_t index, Cycle now) {
-    Slot& slot = ray_store_[index];
-    const CellHit& hit = slot.packet->visit.hit;
-    if (env_.context.settings.shadows != Shadows::per_hit) slot.lit = store_.lit[hit.voxel];
-    slot.result = shade_hit(env_.context, slot.setup, store_.voxels[hit.voxel].object, slot.lit,
-                            slot.colour[0], slot.colour[1]);
-    slot.state = Slot::State::in_shading;
-    settle(slot.wait, slot.packet->ray.id, now);
+    settle(slot.wait, ray.id, now);
     slot.wait.cause = Stall::none;
-    const std::uint32_t cycles =
-        unit_cycles(shade_cycles(env_.context, slot.lit & slot.setup.facing, env_.costs()));
-    shading_ = {Shading::Job::shade, index, now + cycles};
-    env_.counters.shading_cycles += cycles;
-    statistics_.shading_cycles += cycles;
-    want(shading_.done);
-}
-
-void Cell::begin_set_up(std::uint32_t index, Cycle now) {
-    Slot& slot = ray_store_[index];
-    const RayPacket& packet = *slot.packet;
-    slot.setup = set_up_hit(env_.context, store_, packet.ray, packet.visit.hit, x_, y_);
-    if (packet.ray.kind == RayKind::primary) {
-        record_first_hit(env_.picture.pixels[pixel_of(packet.ray.id)], slot.setup,
-                         store_.voxels[packet.visit.hit.voxel].polygon);
-    }
-    slot.state = Slot::State::in_setup;
-    settle(slot.wait, packet.ray.id, now);
-    slot.wait.cause = Stall::none;
-    const std::uint32_t cycles = unit_cycles(setup_cycles(env_.context, slot.setup, env_.costs()));
-    shading_ = {Shading::Job::set_up, index, now + cycles};
-    env_.counters.shading_cycles += cycles;
-    statistics_.shading_cycles += cycles;
-    want(shading_.done);
+    use_shading_unit(next->job, next->slot, cycles, now);
 }
 
 void Cell::begin_direct(RayPacket& packet, Cycle now) {
     tell(now, CellEvent::direct, packet.ray.id, 0);
     const CellHit& hit = packet.visit.hit;
     const HitSetup setup = set_up_hit(env_.context, store_, packet.ray, hit, x_, y_);
-    const Voxel& voxel = store_.voxels[hit.voxel];
     if (packet.ray.kind == RayKind::primary) {
-        record_first_hit(env_.picture.pixels[pixel_of(packet.ray.id)], setup, voxel.polygon);
+        record_first_hit(env_.picture.pixels[pixel_of(packet.ray.id)], setup,
+                         store_.voxels[hit.voxel].polygon);
     }
-    const std::uint64_t lit = env_.context.settings.shadows == Shadows::per_hit ? 0 : store_.lit[hit.voxel];
-    const std::uint32_t cycles = unit_cycles(setup_cycles(env_.context, setup, env_.costs()) +
-                                             shade_cycles(env_.context, lit & setup.facing, env_.costs()));
-    shading_ = {Shading::Job::direct, 0, now + cycles};
-    direct_ = {&packet, shade_hit(env_.context, setup, voxel.object, lit, dvec3(0), dvec3(0))};
+    const std::uint32_t cycles = shading_.direct(packet, setup, store_, env_.context, env_.costs());
+    use_shading_unit(ShadingUnit::Job::direct, 0, cycles, now);
+}
+
+void Cell::use_shading_unit(ShadingUnit::Job job, std::uint32_t slot, std::uint32_t cycles, Cycle now) {
+    cycles = unit_cycles(cycles);
+    shading_.start(job, slot, now + cycles);
     env_.counters.shading_cycles += cycles;
     statistics_.shading_cycles += cycles;
-    want(shading_.done);
+    want(shading_.done());
 }
 
 void Cell::finish_shading(Cycle now) {
-    if (shading_.job == Shading::Job::direct_answer) return;
-    if (now < shading_.done) {
-        want(shading_.done);
-        return;
-    }
-    if (shading_.job == Shading::Job::direct) {
-        shading_.job = Shading::Job::direct_answer;  // leaves in move_replies
+    using Job = ShadingUnit::Job;
+    if (shading_.job() == Job::direct_answer || !shading_.finished(now, wakeup_)) return;
+    if (shading_.job() == Job::direct) {
+        shading_.hold_answer();  // leaves in move_replies
         ++replies_;
         return;
     }
-    Slot& slot = ray_store_[shading_.slot];
-    if (shading_.job == Shading::Job::set_up) {
-        const bool memo = env_.context.settings.shadows == Shadows::memo;
-        if (env_.context.settings.shadows == Shadows::per_hit) slot.to_ask = slot.awaited = slot.setup.facing;
-        if (memo) slot.to_ask = slot.setup.facing & ~asked_[slot.packet->visit.hit.voxel];
-        slot.send_child[0] = slot.await_child[0] = slot.setup.reflects;
-        slot.send_child[1] = slot.await_child[1] = slot.setup.refracts;
-        slot.state = Slot::State::waiting;
+    Slot& slot = ray_store_[shading_.slot()];
+    if (shading_.job() == Job::set_up) {
+        const bool memo = env_.settings.shadows == Shadows::memo;
+        ShadingUnit::await(slot, env_.settings.shadows, memo ? asked_[slot.packet->visit.hit.voxel] : 0);
         slot.wait = {now, Stall::shading};
     } else {
         slot.state = Slot::State::to_answer;
@@ -342,27 +261,27 @@ void Cell::finish_shading(Cycle now) {
     }
     slot.changed = now;
     slot_changed();
-    record(now, CellEvent::shade, shading_.slot, slot.packet->ray.id, shading_.slot);
-    shading_.job = Shading::Job::idle;
+    record(now, CellEvent::shade, shading_.slot(), slot.packet->ray.id, shading_.slot());
+    shading_.free();
 }
 
 void Cell::move_replies(Cycle now) {
     bool waits = false;
     bool went = false;
-    if (shading_.job == Shading::Job::direct_answer) {
-        Answer answer = answer_to(direct_.packet->ray, Answer::Kind::intensity);
-        answer.colour = direct_.result;
-        RayPacket* packet = direct_.packet;
+    if (shading_.job() == ShadingUnit::Job::direct_answer) {
+        RayPacket* packet = shading_.direct_ray();
+        Answer answer = answer_to(packet->ray, Answer::Kind::intensity);
+        answer.colour = shading_.direct_result();
         if (send_answer(answer, now)) {
-            settle(direct_wait_, answer.id, now);
-            direct_wait_.cause = Stall::none;
+            settle(shading_.direct_wait(), answer.id, now);
+            shading_.direct_wait().cause = Stall::none;
             ++env_.counters.rays_answered;
             env_.pools.rays.give_back(packet);
-            shading_.job = Shading::Job::idle;
+            shading_.free();
             --replies_;
             went = true;
         } else {
-            stall(direct_wait_, cause_, answer.id, now);
+            stall(shading_.direct_wait(), cause_, answer.id, now);
             waits = true;
         }
     }

@@ -10,9 +10,9 @@ void Cell::add_stall(const Wait& wait, std::uint64_t ray, Cycle now) {
 }
 
 Cell::Remaining Cell::remaining(Cycle now) const {
-    const bool shades = shading_.job != Shading::Job::idle && shading_.done > now;
-    return {traversal_.packet && traversal_.done > now ? traversal_.done - now : 0,
-            shades ? shading_.done - now : 0};
+    const bool tests = traversal_.packet() && traversal_.done() > now;
+    const bool shades = !shading_.idle() && shading_.done() > now;
+    return {tests ? traversal_.done() - now : 0, shades ? shading_.done() - now : 0};
 }
 
 CellStatistics Cell::statistics(Cycle now) const {
@@ -29,7 +29,7 @@ CellStatistics Cell::statistics(Cycle now) const {
         if (const RayPacket* packet = packet_at(place)) add(wait_of(*packet, place));
     }
     for (const Wait& wait : answer_waits_) add(wait);
-    add(direct_wait_);
+    add(shading_.direct_wait());
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];
         const bool waits = slot.state == Slot::State::to_set_up || slot.state == Slot::State::to_answer;

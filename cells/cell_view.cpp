@@ -42,8 +42,7 @@ HeadStall Cell::stall_of(const RayPacket& packet, Cycle now) const {
         case Need::Kind::response:
             return answer();
         case Need::Kind::shading_unit:
-            return shading_.job != Shading::Job::idle || slot_complete() ? HeadStall::shading_unit
-                                                                         : HeadStall::none;
+            return !shading_.idle() || slot_complete() ? HeadStall::shading_unit : HeadStall::none;
         case Need::Kind::slot:
             // Slots are only taken through the port: a ray that the port held back had one, if there is one.
             if (!ray_store_.has_room(packet.ray.generation))
@@ -80,7 +79,7 @@ HeadStall Cell::stall_of(const Slot& slot, Cycle now) const {
 }
 
 UnitView Cell::traversal_unit() const {
-    const RayPacket* packet = traversal_.packet;
+    const RayPacket* packet = traversal_.packet();
     if (!packet) return {};
     const bool compares = !packet->ray.outside && packet->visit.comparisons.runs > 0;
     return {UnitView::State::busy, compares ? UnitView::Operation::compare : UnitView::Operation::walk,
@@ -89,27 +88,30 @@ UnitView Cell::traversal_unit() const {
 
 UnitView Cell::shading_unit() const {
     using Operation = UnitView::Operation;
-    switch (shading_.job) {
-        case Shading::Job::idle:
+    using Job = ShadingUnit::Job;
+    const Job job = shading_.job();
+    switch (job) {
+        case Job::idle:
             break;
-        case Shading::Job::set_up:
-        case Shading::Job::shade:
-            return {UnitView::State::busy,
-                    shading_.job == Shading::Job::shade ? Operation::shade : Operation::set_up,
-                    ray_store_[shading_.slot].packet->ray.id};
-        case Shading::Job::direct:
-            return {UnitView::State::busy, Operation::direct, direct_.packet->ray.id};
-        case Shading::Job::direct_answer:
-            return {UnitView::State::blocked, Operation::direct, direct_.packet->ray.id};
+        case Job::set_up:
+        case Job::shade:
+            return {UnitView::State::busy, job == Job::shade ? Operation::shade : Operation::set_up,
+                    ray_store_[shading_.slot()].packet->ray.id};
+        case Job::direct:
+            return {UnitView::State::busy, Operation::direct, shading_.direct_ray()->ray.id};
+        case Job::direct_answer:
+            return {UnitView::State::blocked, Operation::direct, shading_.direct_ray()->ray.id};
     }
     return {};
 }
 
 UnitView Cell::loading_unit(Cycle now) const {
-    if (!load_item_) return {};
-    const bool makes_voxel = load_item_->kind == LoadItem::Kind::span && load_item_->span.x == x_;
-    return {now < load_done_ ? UnitView::State::busy : UnitView::State::blocked,
-            makes_voxel ? UnitView::Operation::make_voxel : UnitView::Operation::pass_on, UnitView::no_ray};
+    const LoadItem* item = loading_.item();
+    if (!item) return {};
+    return {
+        now < loading_.done() ? UnitView::State::busy : UnitView::State::blocked,
+        LoadingUnit::makes_voxel(*item, x_) ? UnitView::Operation::make_voxel : UnitView::Operation::pass_on,
+        UnitView::no_ray};
 }
 
 Cycle Cell::oldest_arrival() const {

@@ -49,13 +49,15 @@ void Cell::add_places(WaitMap& map) const {
             }
         }
     }
-    if (own_)
-        map.place(own_->ray,
-                  map.add(this, 0, node(Kind::own, "own ray", describe(own_->ray), own_->decided)));
-    if (shading_.job == Shading::Job::direct || shading_.job == Shading::Job::direct_answer) {
-        map.place(direct_.packet->ray,
+    if (injector_.ray())
+        map.place(injector_.ray()->ray, map.add(this, 0,
+                                                node(Kind::own, "own ray", describe(injector_.ray()->ray),
+                                                     injector_.ray()->decided)));
+    if (shading_.job() == ShadingUnit::Job::direct || shading_.job() == ShadingUnit::Job::direct_answer) {
+        map.place(shading_.direct_ray()->ray,
                   map.add(this, 0,
-                          node(Kind::shading, "shading unit", describe(direct_.packet->ray), shading_.done)));
+                          node(Kind::shading, "shading unit", describe(shading_.direct_ray()->ray),
+                               shading_.done())));
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];
@@ -133,7 +135,7 @@ Wants Cell::wants_slot(const WaitMap& map, const Ray& ray) const {
 }
 
 Wants Cell::wants_shading(const WaitMap& map) const {
-    if (shading_.job != Shading::Job::direct_answer) return Wants::nothing("the shading unit");
+    if (shading_.job() != ShadingUnit::Job::direct_answer) return Wants::nothing("the shading unit");
     const auto unit = map.find(this, Kind::shading, 0);
     return unit ? Wants{false, false, {*unit}, "the shading unit"} : Wants::nothing("the shading unit");
 }
@@ -207,9 +209,9 @@ Wants Cell::wants_of_slot(const WaitMap& map, std::uint32_t index) const {
 Wants Cell::wants_load(const WaitMap& map) const {
     const Message head = load_in_->front(0);
     if (head.kind != Message::Kind::load) return Wants::nothing("its arrival");
-    if (load_item_ != head.load || env_.scheduler.now() < load_done_)
+    if (loading_.item() != head.load || env_.scheduler.now() < loading_.done())
         return Wants::nothing("the end of the cell's work");
-    if (drops(*head.load)) return Wants::nothing("nothing: it ends here");
+    if (LoadingUnit::ends_at(*head.load, x_, env_.width())) return Wants::nothing("nothing: it ends here");
     return wants_buffer(map, *out_[std::size_t(Side::east)], 0, "output east");
 }
 
@@ -231,11 +233,12 @@ void Cell::add_waits(WaitMap& map) const {
                                                                 : Wants::nothing("its arrival"));
         }
     }
-    if (const auto node = map.find(this, Kind::own, 0)) map.set(*node, wants_ray(map, *own_));
+    if (const auto node = map.find(this, Kind::own, 0)) map.set(*node, wants_ray(map, *injector_.ray()));
     if (const auto node = map.find(this, Kind::shading, 0)) {
-        map.set(*node, shading_.job == Shading::Job::direct_answer
-                           ? wants_answer_way(map, answer_to(direct_.packet->ray, Answer::Kind::intensity))
-                           : Wants::nothing("the end of its shading"));
+        map.set(*node,
+                shading_.job() == ShadingUnit::Job::direct_answer
+                    ? wants_answer_way(map, answer_to(shading_.direct_ray()->ray, Answer::Kind::intensity))
+                    : Wants::nothing("the end of its shading"));
     }
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         if (const auto node = map.find(this, Kind::slot, i)) map.set(*node, wants_of_slot(map, i));

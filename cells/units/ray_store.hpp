@@ -8,6 +8,7 @@
 
 #include "cells/channels/message.hpp"
 #include "cells/clock/scheduler.hpp"
+#include "cells/units/retry.hpp"
 
 namespace raycell {
 
@@ -22,8 +23,7 @@ struct Slot {
     std::uint64_t lit = 0;
     bool send_child[2] = {false, false};   ///< reflected, refracted: to be sent (again)
     bool await_child[2] = {false, false};  ///< answer still to come
-    Cycle send_at[2] = {0, 0};             ///< not before: back-off after a postponement
-    std::uint8_t attempts[2] = {0, 0};
+    Retry retry[2];                        ///< after a postponement
     dvec3 colour[2] = {dvec3(0), dvec3(0)};
     RayPacket* child = nullptr;  ///< on its way out of the cell, one at a time
     dvec3 result{0, 0, 0};

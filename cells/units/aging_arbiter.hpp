@@ -1,0 +1,62 @@
+// Aging: who has waited for too long goes first, whatever it is: the fairness that deadlock.md, step 5, asks
+// of a cell. Without it a stream of notices can starve what would end it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "cells/clock/scheduler.hpp"
+
+namespace raycell {
+
+/// Knows when there may be something overdue, and puts it in order. What has waited for more than `patience`
+/// cycles when an epoch began goes before all others, oldest first. It is looked for when an epoch begins in
+/// which there may be any, and in every step while there is: so it does not matter how often the cell runs.
+class AgingArbiter {
+  public:
+    static constexpr Cycle patience = 65536;
+    static constexpr Cycle epoch = patience / 8;       ///< ages are counted in these
+    static constexpr std::uint32_t others = 1U << 11;  ///< a bit that stands for what was not looked at
+
+    enum class Kind : std::uint8_t { answer, reply, ray };
+    struct Overdue {
+        Cycle since;
+        Kind kind;
+        std::size_t index;  ///< the side of an answer, the place of a ray
+    };
+
+    /// Whether the cell is to look for what is overdue in this step.
+    bool due(Cycle now) const { return now >= look_at_; }
+    /// Something new is at the head of a buffer, and may have waited for longer than anybody has.
+    void new_head(Cycle now);
+    /// The same of an answer, where something overdue is parked: it may be older than its epoch.
+    void new_answer() {
+        if (parked_) parked_ |= others;
+    }
+    /// These, bits of the cell's, may move again: if any of them was overdue it is looked at once.
+    void unparked(std::uint32_t bits, Cycle now);
+
+    /// One look at all that waits.
+    class Look {
+      public:
+        Look(AgingArbiter& arbiter, Cycle now);
+        /// Since when something has waited. `parked`: it can't move before its bit is unparked.
+        void add(Cycle since, Kind kind, std::size_t index, std::uint32_t bit = 0, bool parked = false);
+        /// What is overdue, oldest first. Decides when to look next.
+        std::vector<Overdue> finish();
+
+      private:
+        AgingArbiter& arbiter_;
+        Cycle now_;
+        Cycle began_;   ///< the epoch
+        Cycle oldest_;  ///< of what is not overdue
+        std::vector<Overdue> overdue_;
+    };
+
+  private:
+    Cycle look_at_ = patience;
+    std::uint32_t parked_ = 0;  ///< bits of what was overdue and parked when it was looked for
+};
+
+}  // namespace raycell
