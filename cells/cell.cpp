@@ -202,7 +202,7 @@ Side Cell::route(const Answer& answer) const {
 }
 
 bool Cell::send_answer(const Answer& answer, Cycle now) {
-    if (local(answer)) {
+    if (is_home(answer)) {
         if (store_port_ == now) {
             want(now + 1);
             cause_ = Stall::store_port;
@@ -269,7 +269,7 @@ void Cell::move_answer(std::size_t from, Cycle now) {
     }
     Answer* answer = message.answer;
     const std::uint64_t id = answer->id;
-    if (local(*answer)) {
+    if (is_home(*answer)) {
         if (store_port_ == now) {
             want(now + 1);
             stall(wait, Stall::store_port, id, now);

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "cells/cell_host.hpp"
-#include "cells/cell_view.hpp"
 #include "cells/channels/link.hpp"
-#include "cells/deadlock/wait_map.hpp"
 #include "cells/environment.hpp"
 #include "cells/memory/fetch_line.hpp"
 #include "cells/units/aging_arbiter.hpp"
@@ -89,28 +87,30 @@ class alignas(64) Cell final : public Client {
     Remaining remaining(Cycle now) const;
     /// True while anything in the cell is unfinished: a unit at work, a slot in use, an own ray not answered.
     bool busy() const;
-    /// What stands in the cell, a line each: for reports of runs that stopped.
-    std::vector<std::string> describe_blocked() const;
     const TimeOut& time_out() const { return time_out_; }
-    /// The cell's part of the wait-for graph: all places of the array first, then what each waits for.
-    void add_places(WaitMap& map) const;
-    void add_waits(WaitMap& map) const;
 
-    // What a probe sees, as it stands at the end of cycle `now`, the last one run (cell_view.cpp).
+    // For whoever looks at a cell from outside, as it stands at the end of the last cycle run.
+    const Environment& environment() const { return env_; }
     // The links, null over the border, also to set observers before a run.
     Link* input(Side side) const { return in_[std::size_t(side)]; }
     Link* output(Side side) const { return out_[std::size_t(side)]; }
     Link* load_input() const { return load_in_; }
-    const RayPacket* own_ray() const { return injector_.ray(); }
-    /// What the oldest message of a buffer waits for; `in` is one of the cell's inputs.
-    HeadStall stall_of(const Link& in, int index, Cycle now) const;
-    /// What a ray that stands in this cell waits for: in a buffer, the own ray or a slot's child.
-    HeadStall stall_of(const RayPacket& packet, Cycle now) const;
-    /// What a slot's child or its reply waits for.
-    HeadStall stall_of(const Slot& slot, Cycle now) const;
-    UnitView traversal_unit() const;
-    UnitView shading_unit() const;
-    UnitView loading_unit(Cycle now) const;
+    const TraversalUnit& traversal() const { return traversal_; }
+    const ShadingUnit& shading() const { return shading_; }
+    const LoadingUnit& loading_unit() const { return loading_; }
+    const Injector& injector() const { return injector_; }
+    bool is_home(const Answer& answer) const { return answer.home_x == x_ && answer.home_y == y_; }
+    /// The side over which an answer goes on: along x, then along y.
+    Side route(const Answer& answer) const;
+    /// Whether a slot lacks nothing any more; whether any does.
+    bool complete(const Slot& slot) const {
+        return ShadingUnit::complete(slot, store_, env_.settings.shadows);
+    }
+    bool slot_complete() const {
+        return ShadingUnit::any_complete(ray_store_, store_, env_.settings.shadows);
+    }
+    /// Whether the ray store's one write port was used in cycle `now`.
+    bool port_used(Cycle now) const { return store_port_ == now; }
     /// Cycle in which the oldest message in the cell's inputs arrived, `never` if there is none.
     Cycle oldest_arrival() const;
 
@@ -149,8 +149,6 @@ class alignas(64) Cell final : public Client {
     bool respond(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
     void end_silently(RayPacket& packet, std::size_t place, Cycle now);
     bool send_answer(const Answer& answer, Cycle now);
-    HeadStall stall_of_answer(const Answer& answer, Cycle now) const;
-    Side route(const Answer& answer) const;
     // cell_overdue.cpp
     void move_overdue(Cycle now);
     // cell_shade.cpp: slots, own rays, shading unit
@@ -161,12 +159,6 @@ class alignas(64) Cell final : public Client {
     void feed_children(Cycle now);
     void feed_own(Cycle now);
     RayPacket* next_child(Slot& slot, std::uint32_t index, Cycle now);
-    bool complete(const Slot& slot) const {
-        return ShadingUnit::complete(slot, store_, env_.settings.shadows);
-    }
-    bool slot_complete() const {
-        return ShadingUnit::any_complete(ray_store_, store_, env_.settings.shadows);
-    }
     bool has_replies() const { return replies_ > 0; }
     void finish_shading(Cycle now);
     void start_shading(Cycle now);
@@ -195,18 +187,6 @@ class alignas(64) Cell final : public Client {
     }
     void add_stall(const Wait& wait, std::uint64_t ray, Cycle now);
 
-    // cell_waits.cpp: the wait-for graph
-    std::string buffer_name(Side from, int index) const;
-    Wants wants_output(const WaitMap& map, Side side, int index) const;
-    Wants wants_answer_way(const WaitMap& map, const Answer& answer) const;
-    Wants wants_slot(const WaitMap& map, const Ray& ray) const;
-    Wants wants_shading(const WaitMap& map) const;
-    Wants wants_ray(const WaitMap& map, const RayPacket& packet) const;
-    Wants wants_children(const WaitMap& map, std::uint32_t index) const;
-    Wants wants_of_slot(const WaitMap& map, std::uint32_t index) const;
-    Wants wants_load(const WaitMap& map) const;
-
-    bool local(const Answer& a) const { return a.home_x == x_ && a.home_y == y_; }
     /// Cycles of a unit's operation, with its random stalls.
     std::uint32_t unit_cycles(std::uint32_t cycles);
     void want(Cycle cycle) { wakeup_.at(cycle); }
@@ -319,10 +299,5 @@ class alignas(64) Cell final : public Client {
     LoadingUnit loading_;
     Link* load_in_ = nullptr;
 };
-
-/// Adds the buffer of a class at the end of a link, if it holds anything.
-void add_buffer(WaitMap& map, const Link& link, int index, WaitGraph::Node node);
-/// What a message waits for that wants to go over a link.
-Wants wants_buffer(const WaitMap& map, const Link& out, int index, const std::string& name);
 
 }  // namespace raycell

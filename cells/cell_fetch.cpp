@@ -75,7 +75,7 @@ void Cell::fetch_ways() const {
     for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
         const auto from = std::size_t(__builtin_ctz(sides));
         const Message* head = in_[from]->head_at(answer_places_[from], env_.scheduler.now());
-        if (!head || head->kind != Message::Kind::answer || local(*head->answer)) continue;
+        if (!head || head->kind != Message::Kind::answer || is_home(*head->answer)) continue;
         const auto side = std::size_t(route(*head->answer));
         out_[side]->fetch(env_.buffer_places[side][std::size_t(env_.classes.answer)]);
         fetch_neighbour(side);

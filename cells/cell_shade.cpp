@@ -161,19 +161,17 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
 // --------------------------------------------------------------------------------------------
 
 bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
+    if (env_.machine.recovery == Recovery::none && !ray_store_.has_room(packet.ray.generation)) {
+        cause_ = Stall::no_slot;  // it may be full for long: the port does not matter then
+        return false;
+    }
     if (store_port_ == now) {
         want(now + 1);
         cause_ = Stall::store_port;
         return false;
     }
     const auto index = ray_store_.allocate(packet.ray.generation);
-    if (!index) {
-        if (env_.machine.recovery == Recovery::none) {
-            cause_ = Stall::no_slot;
-            return false;
-        }
-        return respond(packet, place, Answer::Kind::postponed, dvec3(0), now);
-    }
+    if (!index) return respond(packet, place, Answer::Kind::postponed, dvec3(0), now);
     // Before the slot is filled: a child that hits its own cell comes from a slot of this same store.
     remove_from(place);
     store_port_ = now;

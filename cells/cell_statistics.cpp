@@ -38,4 +38,14 @@ CellStatistics Cell::statistics(Cycle now) const {
     return sum;
 }
 
+Cycle Cell::oldest_arrival() const {
+    Cycle oldest = never;
+    for (const Link* in : in_) {
+        for (int index = 0; in && index < env_.classes.count; ++index) {
+            if (in->front(index).kind != Message::Kind::none) oldest = std::min(oldest, in->arrival(index));
+        }
+    }
+    return oldest;
+}
+
 }  // namespace raycell

@@ -1,6 +1,6 @@
 // What load messages wait for: the wait-for graph of a machine that loads. Messages only go down the
 // pipeline, so something always moves; the graph says what holds up the others.
-#include "cells/deadlock/wait_map.hpp"
+#include "cells/deadlock/cell_waits.hpp"
 #include "pipeline/machine.hpp"
 
 namespace raycell {
@@ -106,14 +106,14 @@ const Link& Machine::input_of_row(int y) const {
 void Machine::add_places(const Band& band, WaitMap& map) const {
     for (int y = band.first; y < band.end; ++y) {
         if (environment_.phase == Phase::load) distribution_.row(y).add_places(map, input_of_row(y));
-        for (int x = 0; x < environment_.width(); ++x) array_.cell(x, y).add_places(map);
+        for (int x = 0; x < environment_.width(); ++x) raycell::add_places(array_.cell(x, y), map);
     }
 }
 
 void Machine::add_waits(const Band& band, WaitMap& map) const {
     for (int y = band.first; y < band.end; ++y) {
         if (environment_.phase == Phase::load) distribution_.row(y).add_waits(map, input_of_row(y));
-        for (int x = 0; x < environment_.width(); ++x) array_.cell(x, y).add_waits(map);
+        for (int x = 0; x < environment_.width(); ++x) raycell::add_waits(array_.cell(x, y), map);
     }
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cells/clock/wall_time.hpp"
-#include "cells/deadlock/wait_map.hpp"
+#include "cells/deadlock/cell_waits.hpp"
 #include "cells/hosts/array.hpp"
 #include "model/files/array_file.hpp"
 #include "pipeline/activity.hpp"

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "cells/deadlock/cell_waits.hpp"
 #include "pipeline/machine.hpp"
 
 namespace raycell {
@@ -127,7 +128,7 @@ std::vector<std::string> Machine::stuck_report() const {
     std::vector<std::vector<RowLine>> sections(
         2);  // cells, then the border's links: of each all ranks' together
     for (const Cell& cell : array_.cells()) {
-        for (std::string& line : cell.describe_blocked()) sections[0].push_back({cell.y(), std::move(line)});
+        for (std::string& line : describe_blocked(cell)) sections[0].push_back({cell.y(), std::move(line)});
     }
     if (exterior_) {
         for (const auto& link : exterior_->links()) {

@@ -119,9 +119,4 @@ std::string describe(const LoadItem& item) {
     return std::string("load message '") + kinds[int(item.kind)] + "'";
 }
 
-const char* name_of(Side side) {
-    constexpr const char* names[] = {"east", "south", "west", "north"};
-    return names[int(side)];
-}
-
 }  // namespace raycell

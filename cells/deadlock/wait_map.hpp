@@ -70,10 +70,8 @@ class WaitMap {
     std::map<Child, Index> places_;
 };
 
-/// A ray's id as reports print it: pixel / path.
 std::string describe(const Ray& ray);
 std::string describe(const Answer& answer);
 std::string describe(const LoadItem& item);
-const char* name_of(Side side);
 
 }  // namespace raycell

@@ -9,12 +9,7 @@
 namespace raycell {
 namespace {
 
-constexpr const char* side_names[] = {"east", "south", "west", "north"};
 constexpr const char* phase_names[] = {"load", "precast", "trace"};
-constexpr const char* head_stall_names[] = {"none",       "traversal_unit", "output_full",
-                                            "wires_busy", "no_slot",        "shading_unit",
-                                            "store_port", "answer_full",    "answer_wires"};
-static_assert(sizeof head_stall_names / sizeof *head_stall_names == stall_count);
 constexpr const char* state_names[] = {"idle", "busy", "blocked"};
 constexpr const char* operation_names[] = {"none",  "walk",   "compare",    "set_up",
                                            "shade", "direct", "make_voxel", "pass_on"};
@@ -105,7 +100,7 @@ void Probe::declare_buffer(CellSignals& cell, const Link& link, int index, const
     buffer.occupancy = vcd_.add_number("occupancy", bits_for_value(env_.machine.buffer_depth));
     buffer.type = vcd_.add_word("type", type_names);
     buffer.ray = vcd_.add_ray("ray");
-    buffer.stall = vcd_.add_word("stall", head_stall_names);
+    buffer.stall = vcd_.add_word("stall", stall_names.data());
     cell.buffers.push_back(buffer);
     vcd_.close_scope();
 }
@@ -115,7 +110,7 @@ void Probe::declare_side(CellSignals& cell, int side) {
     if (!link) return;
     const BufferClasses& classes = env_.classes;
     const bool horizontal = side % 2 == 0;
-    vcd_.open_scope(side_names[side]);
+    vcd_.open_scope(name_of(Side(side)));
     for (int index = 0; index < classes.count; ++index) {
         // What comes in at one side runs towards the other.
         if (!classes.used(index, horizontal, opposite(Side(side)))) continue;
@@ -141,7 +136,7 @@ void Probe::declare_cell(const Cell& cell) {
     vcd_.open_scope("own");
     signals.own_type = vcd_.add_word("type", type_names);
     signals.own_ray = vcd_.add_ray("ray");
-    signals.own_stall = vcd_.add_word("stall", head_stall_names);
+    signals.own_stall = vcd_.add_word("stall", stall_names.data());
     vcd_.close_scope();
     vcd_.open_scope("ray_store");
     signals.store_occupancy = vcd_.add_number("occupancy", bits_for_value(cell.ray_store().capacity()));
@@ -151,7 +146,7 @@ void Probe::declare_cell(const Cell& cell) {
         s.state = vcd_.add_word("state", slot_names);
         s.ray = vcd_.add_ray("ray");
         s.child = vcd_.add_ray("child");
-        s.stall = vcd_.add_word("stall", head_stall_names);
+        s.stall = vcd_.add_word("stall", stall_names.data());
         signals.slots.push_back(s);
         vcd_.close_scope();
     }
@@ -171,7 +166,7 @@ void Probe::sample_buffer(const Cell& cell, BufferSignals& buffer, Cycle now) {
     buffer.on_wires = head.type == on_wires;
     vcd_.set(buffer.type, head.type);
     vcd_.set(buffer.ray, head.ray);
-    vcd_.set(buffer.stall, std::uint64_t(cell.stall_of(*buffer.link, buffer.index, now)));
+    vcd_.set(buffer.stall, std::uint64_t(CellView(cell, now).stall_of(*buffer.link, buffer.index)));
 }
 
 void Probe::sample_unit(const UnitSignals& signals, const UnitView& unit, bool of_rays) {
@@ -189,20 +184,21 @@ void Probe::sample_slots(const CellSignals& signals, const Cell& cell, Cycle now
         vcd_.set(s.state, used ? std::uint64_t(store[i].state) : 0);
         vcd_.set(s.ray, used ? store[i].packet->ray.id : VcdWriter::no_ray);
         vcd_.set(s.child, used && store[i].child ? store[i].child->ray.id : VcdWriter::no_ray);
-        vcd_.set(s.stall, used ? std::uint64_t(cell.stall_of(store[i], now)) : 0);
+        vcd_.set(s.stall, used ? std::uint64_t(CellView(cell, now).stall_of(store[i])) : 0);
     }
 }
 
 void Probe::sample_cell(CellSignals& signals, Cycle now) {
     const Cell& cell = *signals.cell;
+    const CellView view(cell, now);
     for (BufferSignals& buffer : signals.buffers) sample_buffer(cell, buffer, now);
-    sample_unit(signals.traversal, cell.traversal_unit(), true);
-    sample_unit(signals.shading, cell.shading_unit(), true);
-    sample_unit(signals.loading, cell.loading_unit(now), false);
-    const RayPacket* own = cell.own_ray();
+    sample_unit(signals.traversal, view.traversal_unit(), true);
+    sample_unit(signals.shading, view.shading_unit(), true);
+    sample_unit(signals.loading, view.loading_unit(), false);
+    const RayPacket* own = cell.injector().ray();
     vcd_.set(signals.own_type, own ? first_ray + std::uint64_t(own->ray.kind) : no_message);
     vcd_.set(signals.own_ray, own ? own->ray.id : VcdWriter::no_ray);
-    vcd_.set(signals.own_stall, own ? std::uint64_t(cell.stall_of(*own, now)) : 0);
+    vcd_.set(signals.own_stall, own ? std::uint64_t(view.stall_of(*own)) : 0);
     sample_slots(signals, cell, now);
 }
 

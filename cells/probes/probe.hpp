@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cells/cell.hpp"
+#include "cells/probes/cell_view.hpp"
 #include "cells/probes/vcd_writer.hpp"
 
 namespace raycell {

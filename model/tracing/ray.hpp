@@ -13,6 +13,10 @@ namespace raycell {
 
 enum class Side : std::uint8_t { east, south, west, north };
 constexpr int side_count = 4;
+constexpr const char* name_of(Side side) {
+    constexpr const char* names[] = {"east", "south", "west", "north"};
+    return names[int(side)];
+}
 constexpr Side opposite(Side side) { return Side((int(side) + 2) % 4); }
 constexpr int step_x(Side side) { return side == Side::east ? 1 : side == Side::west ? -1 : 0; }
 constexpr int step_y(Side side) { return side == Side::south ? 1 : side == Side::north ? -1 : 0; }

@@ -5,7 +5,7 @@
 #include <systemc>
 
 #include "cells/channels/link.hpp"
-#include "cells/deadlock/wait_map.hpp"
+#include "cells/deadlock/cell_waits.hpp"
 #include "cells/environment.hpp"
 
 namespace raycell {

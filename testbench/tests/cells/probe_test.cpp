@@ -254,7 +254,7 @@ TEST(TimedProbe, HeadsInADeadlockOfSharedBuffersWaitForRoomAndForNothingThatPass
     auto causes = causes_at_end(probed, dump);
     EXPECT_GT(causes["output_full"], 0);
     for (const char* passing :
-         {"none", "traversal_unit", "wires_busy", "store_port", "answer_wires", "no_slot"}) {
+         {"none", "traversal", "output_busy", "store_port", "answer_busy", "no_slot"}) {
         EXPECT_EQ(causes[passing], 0) << passing;
     }
 }
@@ -268,7 +268,7 @@ TEST(TimedProbe, HeadsInADeadlockOfFullRayStoresWaitForSlots) {
     ASSERT_EQ(probed.result.verdict, Verdict::deadlock);
     auto causes = causes_at_end(probed, dump);
     EXPECT_GT(causes["no_slot"], 0);
-    for (const char* passing : {"none", "traversal_unit", "wires_busy", "store_port", "answer_wires"}) {
+    for (const char* passing : {"none", "traversal", "output_busy", "store_port", "answer_busy"}) {
         EXPECT_EQ(causes[passing], 0) << passing;
     }
 }

@@ -120,6 +120,39 @@ TEST(CellWaiting, AnAnswerThatNeverLeavesTheShadingUnitCountsUpToTheEnd) {
     EXPECT_EQ(all_cycles(s), cycles_of(s, Stall::answer_full));
 }
 
+TEST(CellWaiting, AHitThatFindsTheStoreFullWaitsForASlotEvenWhereThePortIsTaken) {
+    CellScene wall = LoneCell::empty(10);
+    hand_made::add_rectangle(wall, hand_made::add_object(wall, hand_made::glowing(dvec3(0.5))), {1, 1, 5},
+                             {0, 1, 0}, {1, 0, 0});
+    Source behind;  // which the wall turns its back on: hits need a slot all the same
+    behind.position = {1.5, 1.5, 9};
+    wall.sources.push_back(behind);
+    MachineSettings machine;
+    machine.ray_store = 1;
+    machine.recovery = Recovery::none;
+    machine.link_bits = 1000;
+    machine.costs.shade_setup = 100000;
+    EmptyCell cell(machine, wall);
+    const CellStatistics s = cell.run(1000, false, [&](Cycle now) {
+        Ray ray = lone_ray({0.5, 1, 4.9}, glm::normalize(dvec3(0, -0.1, 1)));
+        ray.home_x = 2;
+        ray.home_y = 1;
+        ray.fresh = false;
+        if (now == 1 || now == 101) cell.send(cell.from(Side::south), ray);
+        // Verdicts that come home to the slot, one in every cycle.
+        Answer verdict;
+        verdict.home_x = verdict.home_y = 1;
+        verdict.ray_kind = RayKind::shadow;
+        verdict.kind = Answer::Kind::lit;
+        Cycle retry = never;
+        Link& west = cell.from(Side::west);
+        if (now > 90 && west.can_send(cell.environment->classes.answer, retry)) cell.send(west, verdict);
+    });
+    EXPECT_EQ(cycles_of(s, Stall::store_port), 0u);
+    EXPECT_GT(cycles_of(s, Stall::no_slot), 800u);
+    EXPECT_EQ(all_cycles(s), cycles_of(s, Stall::no_slot));
+}
+
 TEST(CellWaiting, AFreeWayIsNoWaiting) {
     EmptyCell empty;
     const CellStatistics s = empty.run(100, true, [&](Cycle now) {

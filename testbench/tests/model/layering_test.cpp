@@ -18,7 +18,7 @@ const std::map<std::string, std::vector<std::string>> sub_folders = {
     {"model",
      {"settings", "numbers", "geometry", "shading", "loading", "picture", "files", "tracing", "machine",
       "truth"}},
-    {"cells", {"memory", "clock", "channels", "meters", "deadlock", "units", ".", "hosts", "probes"}},
+    {"cells", {"memory", "clock", "channels", "meters", "units", ".", "hosts", "deadlock", "probes"}},
     {"pipeline", {"ranks", "stages", "."}},
     {"scenes", {"."}},
 };

@@ -2,23 +2,9 @@
 // the values.
 #pragma once
 
-#include <cstdint>
+#include "cells/cell.hpp"
 
 namespace raycell {
-
-/// What the head of a buffer, the own ray or a slot waits for.
-enum class HeadStall : std::uint8_t {
-    none,            ///< nothing there, at work on it, or it moves with the next cycle
-    traversal_unit,  ///< not yet tested: the unit is at work on another ray
-    output_full,     ///< no room in the buffer behind the output
-    wires_busy,      ///< the output's wires carry another message
-    no_slot,         ///< the ray store has no slot for it (recovery `none`)
-    shading_unit,    ///< a hit that needs no slot, and the unit is at work or has other things to do first
-    store_port,      ///< the ray store's one write port was used in this cycle
-    answer_full,     ///< its answer, or the notice that it is postponed: no room behind the output
-    answer_wires     ///< the same: the output's wires carry another message
-};
-constexpr int stall_count = 9;
 
 struct UnitView {
     enum class State : std::uint8_t {
@@ -40,6 +26,30 @@ struct UnitView {
     Operation operation = Operation::none;
     std::uint64_t ray = no_ray;  ///< id of the ray at work on
     static constexpr std::uint64_t no_ray = ~std::uint64_t(0);
+};
+
+/// A cell as it stands at the end of cycle `now`, the last one run. Causes are what the cell itself came upon
+/// when it last looked.
+class CellView {
+  public:
+    CellView(const Cell& cell, Cycle now) : cell_(cell), env_(cell.environment()), now_(now) {}
+
+    /// What the oldest message of a buffer waits for; `in` is one of the cell's inputs.
+    Stall stall_of(const Link& in, int index) const;
+    /// What a ray that stands in this cell waits for: in a buffer, the own ray or a slot's child.
+    Stall stall_of(const RayPacket& packet) const;
+    /// What a slot's child or its reply waits for.
+    Stall stall_of(const Slot& slot) const;
+    UnitView traversal_unit() const;
+    UnitView shading_unit() const;
+    UnitView loading_unit() const;
+
+  private:
+    Stall stall_of_answer(const Answer& answer) const;
+
+    const Cell& cell_;
+    const Environment& env_;
+    Cycle now_;
 };
 
 }  // namespace raycell
