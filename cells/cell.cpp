@@ -19,24 +19,9 @@ Cell::Cell(Environment& environment, int x, int y)
                  environment.machine.slots) {}
 
 void Cell::elaborate() {
-    for (int side = 0; side < side_count; ++side) {
-        if (Link* out = out_[std::size_t(side)]) out->tell_room(1U << unsigned(side));
-        Link* in = in_[std::size_t(side)];
-        if (!in) continue;
-        const bool horizontal = side % 2 == 0;
-        for (int index = 0; index < env_.classes.count; ++index) {
-            std::uint32_t bits = index == env_.classes.answer ? 1U << (answer_bits + unsigned(side)) : 0;
-            const bool answers_only = index == env_.classes.answer && env_.classes.count > 1;
-            // What comes in at one side runs towards the other.
-            if (!answers_only && env_.classes.used(index, horizontal, opposite(Side(side)))) {
-                bits |= 1U << ray_input_count_;
-                ray_inputs_[ray_input_count_++] = RayInput(Side(side), index, in->place(index));
-            }
-            if (bits) in->watch(index, bits);
-            if (index == env_.classes.answer) answer_places_[std::size_t(side)] = in->place(index);
-        }
-    }
-    if (!load_in_) load_in_ = in_[std::size_t(Side::west)];
+    router_.elaborate();
+    inputs_.elaborate(env_.classes);
+    if (!load_in_) load_in_ = inputs_.link(Side::west);
 }
 
 void Cell::begin_phase() {
@@ -76,20 +61,11 @@ Cycle Cell::step(Cycle now) {
     move_rays(now);
     if (!traversal_.packet()) start_traversal(now);
     if (look_to_shade_ && shading_.idle()) start_shading(now);
-    time_out_.step(moved_, blocked_ || parked_, now, env_.wait_counts);
+    time_out_.step(moved_, blocked_ || router_.parked(), now, env_.wait_counts);
     return wakeup_.next;
 }
 
-void Cell::unpark(Cycle now) {
-    std::uint32_t unparked = 0;
-    for (; room_made_; room_made_ &= room_made_ - 1) {
-        std::uint16_t& bits = parked_on_[std::size_t(__builtin_ctz(room_made_))];
-        unparked |= bits;
-        bits = 0;
-    }
-    parked_ &= ~unparked;
-    aging_.unparked(unparked, now);
-}
+void Cell::unpark(Cycle now) { aging_.unparked(router_.unpark(room_made_), now); }
 
 void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail) {
     // Over (cycle, event, detail); the array joins its cells' hashes in their order.
@@ -102,39 +78,34 @@ void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_
 // -----------------------------------------------------------------------------------------------
 
 RayPacket* Cell::packet_at(std::size_t place) const {
-    if (place < ray_input_count_) {
-        const RayInput& input = ray_inputs_[place];
-        const Message* message = in_[std::size_t(input.side)]->head_at(input.place, env_.scheduler.now());
-        return message && message->kind == Message::Kind::ray ? message->ray : nullptr;
-    }
-    if (place == ray_input_count_) return injector_.ray();
-    return ray_store_[std::uint32_t(place - ray_input_count_ - 1)].child;
+    if (place < own_place()) return inputs_.ray(place, env_.scheduler.now());
+    if (place == own_place()) return injector_.ray();
+    return ray_store_[std::uint32_t(place - first_slot_place())].child;
 }
 
 void Cell::remove_from(std::size_t place) {
     moved_ = true;
     decided_ &= ~bit_of(place);
-    if (place < ray_input_count_) {
-        const RayInput& input = ray_inputs_[place];
-        Link& link = *in_[std::size_t(input.side)];
-        const Cycle now = env_.scheduler.now();
-        pending_ &= ~link.pop_at(input.place, now);
-        if (link.occupancy_at(input.place) == 0) return;
+    const Cycle now = env_.scheduler.now();
+    if (place < own_place()) {
+        bool more = false;
+        pending_ &= ~inputs_.pop_ray(place, now, more);
+        if (!more) return;
         want(now + 1);
         // An answer that stood behind the ray may have waited for longer than anybody has.
         if (env_.classes.count == 1) aging_.new_head(now);
         return;
     }
-    if (place == ray_input_count_) {
+    if (place == own_place()) {
         injector_.left();
     } else {
-        Slot& slot = ray_store_[std::uint32_t(place - ray_input_count_ - 1)];
+        Slot& slot = ray_store_[std::uint32_t(place - first_slot_place())];
         slot.child = nullptr;
         --children_;
         slot_changed();
-        slot.wait = {env_.scheduler.now(), Stall::shading};
+        slot.wait = {now, Stall::shading};
     }
-    want(env_.scheduler.now() + 1);  // the next child or own ray may follow
+    want(now + 1);  // the next child or own ray may follow
 }
 
 std::uint32_t Cell::unit_cycles(std::uint32_t cycles) {
@@ -154,7 +125,7 @@ void Cell::start_traversal(Cycle now) {
     if (inputs == 0 && slots == 0) return;
     // Places of slots come last, so the round is: inputs from next() on, slots, inputs before it. How
     // many they are is another line of memory.
-    const std::size_t first_slot = ray_input_count_ + std::size_t(1);
+    const std::size_t first_slot = first_slot_place();
     const std::size_t next = traversal_.next();
     const std::size_t start = next < first_slot || next < place_count() ? next : 0;
     const std::uint32_t before = start < first_slot ? inputs & ((1U << start) - 1) : inputs;
@@ -183,7 +154,7 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     env_.counters.traversal_cycles += cycles;
     statistics_.traversal_cycles += cycles;
     traversal_.start(*packet, std::uint32_t(place), now + cycles);
-    if (place <= ray_input_count_) {
+    if (place <= own_place()) {
         const Need& need = packet->need;
         ways_[place] = Way(need.kind == Need::Kind::output ? int(need.side) : no_way, need.index);
     }
@@ -195,11 +166,6 @@ bool Cell::test_at(std::size_t place, Cycle now) {
 
 // ---- routing
 // -------------------------------------------------------------------------------------------------
-
-Side Cell::route(const Answer& answer) const {
-    if (answer.home_x != x_) return answer.home_x > x_ ? Side::east : Side::west;
-    return answer.home_y > y_ ? Side::south : Side::north;
-}
 
 bool Cell::send_answer(const Answer& answer, Cycle now) {
     if (is_home(answer)) {
@@ -213,9 +179,10 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
         deliver(answer, now);
         return true;
     }
-    Link* out = out_[std::size_t(route(answer))];
-    if (!out->can_send(env_.classes.answer, wakeup_.next)) {
-        cause_ = out->room(env_.classes.answer) == Link::Room::full ? Stall::answer_full : Stall::answer_busy;
+    const Side way = route(answer);
+    const Link::Room room = router_.ask(way, env_.classes.answer, 0, wakeup_);
+    if (room != Link::Room::free) {
+        cause_ = room == Link::Room::full ? Stall::answer_full : Stall::answer_busy;
         return false;
     }
     ++env_.counters.answers_sent;
@@ -226,9 +193,9 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
     Answer* copy = env_.pools.answers.take();
     *copy = answer;
     const bool intensity = answer.kind == Answer::Kind::intensity;
-    out->send(env_.classes.answer, Message(copy), intensity ? env_.cycles.intensity : env_.cycles.verdict,
-              env_.answer_routing);
-    record_send(now, route(answer), env_.classes.answer, answer.id);
+    router_.send(way, env_.classes.answer, Message(copy),
+                 intensity ? env_.cycles.intensity : env_.cycles.verdict, env_.answer_routing);
+    record_send(now, way, env_.classes.answer, answer.id);
     return true;
 }
 
@@ -238,14 +205,12 @@ void Cell::move_answers(Cycle now) {
     for (std::uint32_t sides = answers_to_move() & ~std::uint32_t(answers_moved_); sides;
          sides &= sides - 1) {
         const int side = __builtin_ctz(sides);
-        const Link* in = in_[std::size_t(side)];
-        const std::uint8_t at = answer_places_[std::size_t(side)];
-        const Message* head = in->head_at(at, now);
-        if (!head || head->kind != Message::Kind::answer) continue;
+        if (!inputs_.answer(std::size_t(side), now)) continue;
+        const Cycle arrival = inputs_.answer_arrival(std::size_t(side));
         int place = count++;
         for (; place > 0; --place) {
             const auto before = std::size_t(order[std::size_t(place - 1)]);
-            if (in_[before]->arrival_at(answer_places_[before]) <= in->arrival_at(at)) break;
+            if (inputs_.answer_arrival(before) <= arrival) break;
             order[std::size_t(place)] = int(before);
         }
         order[std::size_t(place)] = side;
@@ -257,17 +222,14 @@ void Cell::move_answers(Cycle now) {
 }
 
 void Cell::move_answer(std::size_t from, Cycle now) {
-    Link& in = *in_[from];
-    Wait& wait = answer_waits_[from];
+    Wait& wait = inputs_.answer_wait(from);
     const int index = env_.classes.answer;
-    const std::uint8_t place = answer_places_[from];
-    const Message message = *in.head_at(place, now);
-    const Cycle ready = in.arrival_at(place) + env_.costs().route_return;
+    const Cycle ready = inputs_.answer_arrival(from) + env_.costs().route_return;
     if (now < ready) {
         want(ready);
         return;
     }
-    Answer* answer = message.answer;
+    Answer* answer = inputs_.answer(from, now);
     const std::uint64_t id = answer->id;
     if (is_home(*answer)) {
         if (store_port_ == now) {
@@ -279,28 +241,26 @@ void Cell::move_answer(std::size_t from, Cycle now) {
         env_.pools.answers.give_back(answer);
     } else {
         const Side way = route(*answer);
-        Link* out = out_[std::size_t(way)];
-        if (!out->can_send(index, wakeup_.next)) {
+        const Link::Room room = router_.ask(way, index, InputPorts::answer_bit(from), wakeup_);
+        if (room != Link::Room::free) {
             blocked_ = true;
-            const bool full = out->room(index) == Link::Room::full;
-            stall(wait, full ? Stall::answer_full : Stall::answer_busy, id, now);
-            if (full && out->sender_waits(index))
-                park(1U << (answer_bits + unsigned(from)), std::size_t(way));
+            stall(wait, room == Link::Room::full ? Stall::answer_full : Stall::answer_busy, id, now);
             return;
         }
         ++env_.counters.rays.return_hops;
         ++statistics_.return_hops;
         if (env_.phase == Phase::trace) ++env_.pixel_hops[pixel_of(answer->id)];
         const bool intensity = answer->kind == Answer::Kind::intensity;
-        out->send(index, message, intensity ? env_.cycles.intensity : env_.cycles.verdict,
-                  env_.answer_routing);
+        router_.send(way, index, Message(answer), intensity ? env_.cycles.intensity : env_.cycles.verdict,
+                     env_.answer_routing);
         record_send(now, way, index, answer->id);
     }
     answer_moved_ = true;
     settle(wait, id, now);
     wait.cause = Stall::none;
-    pending_ &= ~in.pop_at(place, now);
-    if (in.occupancy_at(place) == 0) return;
+    bool more = false;
+    pending_ &= ~inputs_.pop_answer(from, now, more);
+    if (!more) return;
     want(now + 1);
     aging_.new_answer();
 }
@@ -320,11 +280,11 @@ void Cell::move_rays(Cycle now) {
             first = {packet->decided, place, packet};
         }
     };
-    for (std::uint32_t inputs = decided_ & ~parked_; inputs; inputs &= inputs - 1) {
+    for (std::uint32_t inputs = decided_ & ~router_.parked(); inputs; inputs &= inputs - 1) {
         look(std::size_t(__builtin_ctz(inputs)));
     }
     const std::size_t slots = slot_places();
-    for (std::size_t slot = 0; slot < slots; ++slot) look(ray_input_count_ + 1 + slot);
+    for (std::size_t slot = 0; slot < slots; ++slot) look(first_slot_place() + slot);
     if (!first.packet) return;
     if (waiting.empty()) {
         try_ray(*first.packet, first.place, now);
@@ -382,11 +342,9 @@ bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
 bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     Ray& ray = packet.ray;
     const Need need = packet.need;
-    Link* out = out_[std::size_t(need.side)];
-    if (!out->can_send(need.index, wakeup_.next)) {
-        const bool full = out->room(need.index) == Link::Room::full;
-        cause_ = full ? Stall::output_full : Stall::output_busy;
-        if (full && out->sender_waits(need.index)) park(bit_of(place), std::size_t(need.side));
+    const Link::Room room = router_.ask(need.side, need.index, bit_of(place), wakeup_);
+    if (room != Link::Room::free) {
+        cause_ = room == Link::Room::full ? Stall::output_full : Stall::output_busy;
         return false;
     }
     remove_from(place);
@@ -403,7 +361,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     }
     if (env_.phase == Phase::trace) ++env_.pixel_hops[pixel_of(ray.id)];
     ++packet.hops;
-    out->send(need.index, Message(&packet), cycles);
+    router_.send(need.side, need.index, Message(&packet), cycles);
     record_send(now, need.side, need.index, ray.id);
     return true;
 }

@@ -12,8 +12,10 @@
 #include "cells/memory/fetch_line.hpp"
 #include "cells/units/aging_arbiter.hpp"
 #include "cells/units/injector.hpp"
+#include "cells/units/input_ports.hpp"
 #include "cells/units/loading_unit.hpp"
 #include "cells/units/ray_store.hpp"
+#include "cells/units/router.hpp"
 #include "cells/units/shading_unit.hpp"
 #include "cells/units/time_out.hpp"
 #include "cells/units/traversal_unit.hpp"
@@ -30,8 +32,8 @@ class alignas(64) Cell final : public Client {
 
     // Before the simulation starts. A side that is never connected is the array's border.
     void set_host(CellHost& host) { host_ = &host; }
-    void connect_in(Side side, Link& in) { in_[std::size_t(side)] = &in; }
-    void connect_out(Side side, Link& out) { out_[std::size_t(side)] = &out; }
+    void connect_in(Side side, Link& in) { inputs_.connect(side, in); }
+    void connect_out(Side side, Link& out) { router_.connect(side, out); }
     /// The way in of load messages; else the west link.
     void connect_load(Link& load) { load_in_ = &load; }
     /// All links are connected.
@@ -92,8 +94,8 @@ class alignas(64) Cell final : public Client {
     // For whoever looks at a cell from outside, as it stands at the end of the last cycle run.
     const Environment& environment() const { return env_; }
     // The links, null over the border, also to set observers before a run.
-    Link* input(Side side) const { return in_[std::size_t(side)]; }
-    Link* output(Side side) const { return out_[std::size_t(side)]; }
+    Link* input(Side side) const { return inputs_.link(side); }
+    Link* output(Side side) const { return router_.link(side); }
     Link* load_input() const { return load_in_; }
     const TraversalUnit& traversal() const { return traversal_; }
     const ShadingUnit& shading() const { return shading_; }
@@ -101,7 +103,7 @@ class alignas(64) Cell final : public Client {
     const Injector& injector() const { return injector_; }
     bool is_home(const Answer& answer) const { return answer.home_x == x_ && answer.home_y == y_; }
     /// The side over which an answer goes on: along x, then along y.
-    Side route(const Answer& answer) const;
+    Side route(const Answer& answer) const { return Router::way_home(answer, x_, y_); }
     /// Whether a slot lacks nothing any more; whether any does.
     bool complete(const Slot& slot) const {
         return ShadingUnit::complete(slot, store_, env_.settings.shadows);
@@ -115,16 +117,6 @@ class alignas(64) Cell final : public Client {
     Cycle oldest_arrival() const;
 
   private:
-    struct RayInput {
-        Side side : 2;
-        std::uint8_t index : 3;  ///< class
-        std::uint8_t place : 3;  ///< of its buffer in the link
-        RayInput(Side from = Side::east, int buffer_class = 0, int at = 0)
-            : side(from), index(std::uint8_t(buffer_class & 7)), place(std::uint8_t(at & 7)) {}
-    };
-    static_assert(sizeof(RayInput) == 1 && Link::most_classes < 8);
-    static constexpr std::size_t most_ray_inputs = 8;
-
     // cell_load.cpp
     void step_load(Cycle now);
     // cell.cpp: traversal and routing
@@ -133,15 +125,18 @@ class alignas(64) Cell final : public Client {
     void move_answers(Cycle now);
     void move_answer(std::size_t from, Cycle now);
     /// Bit per side with an answer that may move.
-    std::uint32_t answers_to_move() const { return (pending_ & ~parked_) >> answer_bits; }
+    std::uint32_t answers_to_move() const {
+        return (pending_ & ~router_.parked()) >> InputPorts::answer_bits;
+    }
     void move_replies(Cycle now);
     void move_rays(Cycle now);
     // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
     // then the slots' child registers (last, because the store may grow while places are gone through).
-    std::size_t place_count() const { return ray_input_count_ + ray_store_.touched() + 1; }
-    Link& link_of(std::size_t ray_input) const { return *in_[std::size_t(ray_inputs_[ray_input].side)]; }
+    std::size_t own_place() const { return inputs_.ray_inputs(); }
+    std::size_t first_slot_place() const { return own_place() + 1; }
+    std::size_t place_count() const { return first_slot_place() + ray_store_.touched(); }
     RayPacket* packet_at(std::size_t place) const;
-    bool nothing_at(std::size_t place) const { return place < ray_input_count_ && !(pending_ >> place & 1); }
+    bool nothing_at(std::size_t place) const { return place < own_place() && !(pending_ >> place & 1); }
     void remove_from(std::size_t place);
     void try_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool move_ray(RayPacket& packet, std::size_t place, Cycle now);
@@ -172,8 +167,8 @@ class alignas(64) Cell final : public Client {
     Wait wait_of(const RayPacket& packet, std::size_t place) const {
         // Nobody notes down that a ray has come to the head of its buffer: the link knows.
         const bool arrived = packet.stage == RayPacket::Stage::untested && packet.wait.cause == Stall::none;
-        if (!arrived || place >= ray_input_count_) return packet.wait;
-        return {link_of(place).head_since_at(ray_inputs_[place].place), Stall::traversal};
+        if (!arrived || place >= own_place()) return packet.wait;
+        return {inputs_.head_since(place), Stall::traversal};
     }
     /// An attempt to move failed because of `cause`.
     void stall(Wait& wait, Stall cause, std::uint64_t ray, Cycle now) {
@@ -211,19 +206,11 @@ class alignas(64) Cell final : public Client {
     }
     /// Bit per place that may hold a ray: inputs and the own ray.
     std::uint32_t occupied() const {
-        const std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1);
-        return inputs | std::uint32_t(injector_.ray() != nullptr) << ray_input_count_;
+        return inputs_.with_rays(pending_) | std::uint32_t(injector_.ray() != nullptr) << own_place();
     }
     bool test_at(std::size_t place, Cycle now);
     /// The bit of an input or of the own ray in the words below; 0 for a slot's place.
-    std::uint32_t bit_of(std::size_t place) const {
-        return place <= ray_input_count_ ? 1U << unsigned(place) : 0;
-    }
-    /// What waits for room behind this side's output is not tried again before the link says that there is.
-    void park(std::uint32_t bits, std::size_t side) {
-        parked_ |= bits;
-        parked_on_[side] |= std::uint16_t(bits);
-    }
+    std::uint32_t bit_of(std::size_t place) const { return place <= own_place() ? 1U << unsigned(place) : 0; }
     void unpark(Cycle now);
     std::uint32_t bit_in_test() const { return traversal_.packet() ? bit_of(traversal_.place()) : 0; }
     static constexpr int no_way = 15;
@@ -241,14 +228,12 @@ class alignas(64) Cell final : public Client {
         fetch_line(reinterpret_cast<const char*>(this) + env_.neighbours[side]);
     }
 
-    static constexpr unsigned answer_bits = 12;
-    static_assert(most_ray_inputs + 1 < answer_bits &&
-                  AgingArbiter::others == 1U << (answer_bits - 1));  // a bit that no place has
+    static_assert(AgingArbiter::others == 1U << (InputPorts::answer_bits - 1) &&
+                  InputPorts::most_ray_inputs + 1 < InputPorts::answer_bits);  // a bit that no place has
 
     // By cache lines: what every step looks at comes first, `hot_lines` of it; what few cells or reports
-    // need, last. Words of bits have a bit per place: ray inputs from 0, the own ray after them, answers by
-    // side from `answer_bits`.
-    static constexpr std::size_t hot_lines = 6;
+    // need, last.
+    static constexpr std::size_t hot_lines = 7;
     Environment& env_;
     CellHost* host_ = nullptr;
     Wakeup wakeup_;
@@ -261,10 +246,8 @@ class alignas(64) Cell final : public Client {
     TraversalUnit traversal_;
     Cycle feed_at_ = never;  ///< cycle from which on a slot may have a child to send
     AgingArbiter aging_;
-    std::uint32_t parked_ = 0;    ///< rays and answers that wait for room behind an output
-    std::uint16_t replies_ = 0;   ///< answers of slots and of the shading unit that want to go
-    std::uint16_t children_ = 0;  ///< on their way out of slots
-    std::uint8_t ray_input_count_ = 0;
+    std::uint16_t replies_ = 0;       ///< answers of slots and of the shading unit that want to go
+    std::uint16_t children_ = 0;      ///< on their way out of slots
     std::uint8_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
     Stall cause_ = Stall::none;       ///< why the last attempt to move something failed
     bool look_to_shade_ : 1;          ///< a slot may have work for the shading unit
@@ -275,18 +258,13 @@ class alignas(64) Cell final : public Client {
 
     const DepthRun* runs_ = nullptr;  ///< of the voxels, once they are all there
     std::uint32_t run_count_ = 0;
-    std::array<std::uint8_t, side_count> answer_places_{};  ///< of answers' buffers in the links
     Fnv hash_{0};
     Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
     TimeOut time_out_;
-    std::array<std::uint16_t, side_count> parked_on_{};  ///< parked, by output; some may have left since
-    std::array<RayInput, most_ray_inputs> ray_inputs_{};
+    Router router_;
+    InputPorts inputs_;
 
-    std::array<Link*, side_count> in_{};
-    std::array<Link*, side_count> out_{};
-
-    std::array<Wait, side_count> answer_waits_{};  ///< of the oldest answer at each side
-    std::array<Way, most_ray_inputs + 1> ways_;    ///< by place, of inputs and the own ray
+    std::array<Way, InputPorts::most_ray_inputs + 1> ways_;  ///< by place, of inputs and the own ray
     Injector injector_;
     ShadingUnit shading_;
 

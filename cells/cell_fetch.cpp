@@ -14,15 +14,10 @@ void Cell::fetch(const void* cell) {
 
 void Cell::fetch_links() const {
     time_out_.fetch();
-    for (std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1) & ~parked_; inputs;
-         inputs &= inputs - 1) {
-        const RayInput& input = ray_inputs_[std::size_t(__builtin_ctz(inputs))];
-        in_[std::size_t(input.side)]->fetch_buffer(input.place);
-    }
-    for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
-        const auto side = std::size_t(__builtin_ctz(sides));
-        in_[side]->fetch_buffer(answer_places_[side]);
-    }
+    for (std::uint32_t rays = inputs_.with_rays(pending_) & ~router_.parked(); rays; rays &= rays - 1)
+        inputs_.fetch_buffer(std::size_t(__builtin_ctz(rays)));
+    for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1)
+        inputs_.fetch_answers(std::size_t(__builtin_ctz(sides)));
     // A ray will be tested: the depths that it is compared with.
     if (occupied() & ~decided_ & ~bit_in_test()) {
         constexpr std::uint32_t most = 32;
@@ -30,18 +25,20 @@ void Cell::fetch_links() const {
         for (std::uint32_t i = 0; i < std::min(run_count_, most); i += in_line) fetch_line(runs_ + i);
         if (env_.context.traffic) fetch_line(&store_);
     }
-    for (std::uint32_t rays = (decided_ | bit_in_test()) & ~parked_; rays; rays &= rays - 1) {
+    for (std::uint32_t rays = (decided_ | bit_in_test()) & ~router_.parked(); rays; rays &= rays - 1) {
         const Way& way = ways_[std::size_t(__builtin_ctz(rays))];
-        if (way.side == no_way || !out_[way.side]) continue;
-        out_[way.side]->fetch(env_.buffer_places[way.side][way.index]);
+        const Link* out = way.side == no_way ? nullptr : router_.link(Side(way.side));
+        if (!out) continue;
+        out->fetch(env_.buffer_places[way.side][way.index]);
         fetch_neighbour(way.side);
     }
 }
 
 /// Who waits for the room that a message leaves behind in a buffer is woken.
 void Cell::fetch_sender(std::size_t side, std::uint8_t place) const {
-    if (!in_[side]->sender_waits_at(place)) return;
-    in_[side]->fetch_source();
+    const Link& in = *inputs_.link(Side(side));
+    if (!in.sender_waits_at(place)) return;
+    in.fetch_source();
     fetch_neighbour(side);
 }
 
@@ -51,22 +48,21 @@ void Cell::fetch_messages() const {
         const char* at = static_cast<const char*>(object);
         for (std::size_t i = 0; i < bytes; i += line) fetch_line(at + i);
     };
-    for (std::uint32_t inputs = pending_ & ((1U << ray_input_count_) - 1); inputs; inputs &= inputs - 1) {
-        const auto place = std::size_t(__builtin_ctz(inputs));
-        if (parked_ >> place & 1) continue;
+    for (std::uint32_t rays = inputs_.with_rays(pending_) & ~router_.parked(); rays; rays &= rays - 1) {
+        const auto place = std::size_t(__builtin_ctz(rays));
         const RayPacket* packet = packet_at(place);
         if (!packet) continue;
-        fetch_sender(std::size_t(ray_inputs_[place].side), ray_inputs_[place].place);
+        fetch_sender(inputs_.side_of(place), inputs_.place_of(place));
         fetch_object(packet, sizeof(RayPacket));
         // Synthetic traffic knows the cell by its voxel.
         if (env_.context.traffic) fetch_line(store_.voxels.data());
     }
     for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
         const auto side = std::size_t(__builtin_ctz(sides));
-        const Message* head = in_[side]->head_at(answer_places_[side], env_.scheduler.now());
-        if (!head || head->kind != Message::Kind::answer) continue;
-        fetch_object(head->answer, sizeof(Answer));
-        fetch_sender(side, answer_places_[side]);
+        const Answer* answer = inputs_.answer(side, env_.scheduler.now());
+        if (!answer) continue;
+        fetch_object(answer, sizeof(Answer));
+        fetch_sender(side, inputs_.answer_place(side));
     }
 }
 
@@ -74,12 +70,12 @@ void Cell::fetch_messages() const {
 void Cell::fetch_ways() const {
     for (std::uint32_t sides = answers_to_move(); sides; sides &= sides - 1) {
         const auto from = std::size_t(__builtin_ctz(sides));
-        const Message* head = in_[from]->head_at(answer_places_[from], env_.scheduler.now());
-        if (!head || head->kind != Message::Kind::answer || is_home(*head->answer)) continue;
-        const auto side = std::size_t(route(*head->answer));
-        out_[side]->fetch(env_.buffer_places[side][std::size_t(env_.classes.answer)]);
-        fetch_neighbour(side);
-        fetch_line(&env_.pixel_hops[pixel_of(head->answer->id)]);
+        const Answer* answer = inputs_.answer(from, env_.scheduler.now());
+        if (!answer || is_home(*answer)) continue;
+        const Side side = route(*answer);
+        router_.link(side)->fetch(env_.buffer_places[std::size_t(side)][std::size_t(env_.classes.answer)]);
+        fetch_neighbour(std::size_t(side));
+        fetch_line(&env_.pixel_hops[pixel_of(answer->id)]);
     }
 }
 

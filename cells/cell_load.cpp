@@ -9,8 +9,7 @@ void Cell::step_load(Cycle now) {
     if (!item) return;
     const bool last =
         LoadingUnit::ends_at(*item, x_, env_.width());  // before a span goes on to the next cell
-    Link* east = out_[std::size_t(Side::east)];
-    if (!last && !east->can_send(0, wakeup_.next)) return;
+    if (!last && router_.ask(Side::east, 0, 0, wakeup_) != Link::Room::free) return;
     record(now, CellEvent::load, std::uint32_t(item->kind), 0, std::uint32_t(item->kind));
     LoadingUnit::take(*item, x_, store_, env_.context);
     if (item->kind == LoadItem::Kind::end_of_scene) {
@@ -25,7 +24,7 @@ void Cell::step_load(Cycle now) {
     } else {
         ++env_.counters.load_hops;
         ++statistics_.load_hops;
-        east->send(0, Message(item), env_.cycles_for(env_.load_bits(*item)));
+        router_.send(Side::east, 0, Message(item), env_.cycles_for(env_.load_bits(*item)));
     }
     if (load_in_->front(0).kind != Message::Kind::none) want(now + 1);
 }

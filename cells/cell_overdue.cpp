@@ -7,15 +7,11 @@ namespace raycell {
 void Cell::move_overdue(Cycle now) {
     using Kind = AgingArbiter::Kind;
     AgingArbiter::Look look(aging_, now);
-    const auto is_parked = [&](std::uint32_t bit) { return (parked_ & bit) != 0; };
-    for (int side = 0; side < side_count; ++side) {
-        const std::uint32_t bit = 1U << (answer_bits + unsigned(side));
-        if (!(pending_ & bit)) continue;
-        const Link* in = in_[std::size_t(side)];
-        const std::uint8_t place = answer_places_[std::size_t(side)];
-        const Message* head = in->head_at(place, now);
-        if (!head || head->kind != Message::Kind::answer) continue;
-        look.add(in->arrival_at(place) + env_.costs().route_return, Kind::answer, std::size_t(side), bit,
+    const auto is_parked = [&](std::uint32_t bit) { return (router_.parked() & bit) != 0; };
+    for (std::size_t side = 0; side < side_count; ++side) {
+        const std::uint32_t bit = InputPorts::answer_bit(side);
+        if (!(pending_ & bit) || !inputs_.answer(side, now)) continue;
+        look.add(inputs_.answer_arrival(side) + env_.costs().route_return, Kind::answer, side, bit,
                  is_parked(bit));
     }
     if (shading_.job() == ShadingUnit::Job::direct_answer) look.add(shading_.done(), Kind::reply, 0);
@@ -31,7 +27,7 @@ void Cell::move_overdue(Cycle now) {
     const int index = env_.classes.answer;
     for (const AgingArbiter::Overdue& overdue : look.finish()) {
         if (overdue.kind == Kind::answer) {
-            const Link& in = *in_[overdue.index];
+            const Link& in = *inputs_.link(Side(overdue.index));
             const int held = in.occupancy(index);
             move_answer(overdue.index, now);
             if (in.occupancy(index) < held) answers_moved_ |= std::uint8_t(1U << overdue.index);

@@ -28,7 +28,7 @@ CellStatistics Cell::statistics(Cycle now) const {
         if (nothing_at(place)) continue;
         if (const RayPacket* packet = packet_at(place)) add(wait_of(*packet, place));
     }
-    for (const Wait& wait : answer_waits_) add(wait);
+    for (const Wait& wait : inputs_.answer_waits()) add(wait);
     add(shading_.direct_wait());
     for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {
         const Slot& slot = ray_store_[i];
@@ -40,7 +40,8 @@ CellStatistics Cell::statistics(Cycle now) const {
 
 Cycle Cell::oldest_arrival() const {
     Cycle oldest = never;
-    for (const Link* in : in_) {
+    for (int side = 0; side < side_count; ++side) {
+        const Link* in = inputs_.link(Side(side));
         for (int index = 0; in && index < env_.classes.count; ++index) {
             if (in->front(index).kind != Message::Kind::none) oldest = std::min(oldest, in->arrival(index));
         }
