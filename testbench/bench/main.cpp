@@ -1,5 +1,5 @@
 // raycell_bench: what a hop costs, by who runs the cells. A process elaborates once, so it runs one case;
-// scripts/bench runs them all.
+// scripts/study bench runs them all.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -23,7 +23,7 @@ using Case = Measured (*)(const Traffic&);
 void run_case(benchmark::State& state, Case run) {
     static int elaborations = 0;
     if (++elaborations > 1) {
-        state.SkipWithError("one case a process: name it with --benchmark_filter, or use scripts/bench");
+        state.SkipWithError("one case a process: name it with --benchmark_filter, or use scripts/study bench");
         return;
     }
     const Traffic& traffic = *new Traffic(int(state.range(0)));  // outlives the machine

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of scripts/bench's growing jobs: bench_test.py CASE BENCH_SCRIPT PROGRAM FOLDER. FOLDER is emptied first."""
+"""Tests of scripts/study bench's growing jobs: bench_test.py CASE STUDY_SCRIPT PROGRAM FOLDER. FOLDER is emptied first."""
 import csv
 import pathlib
 import shutil
@@ -42,7 +42,7 @@ class Test:
 
     def bench(self, *words):
         sides = ",".join(map(str, SIDES))
-        return subprocess.run([self.script, *QUICK, "--growth-sides", sides, "--program-folder", str(self.programs),
+        return subprocess.run([self.script, "bench", *QUICK, "--growth-sides", sides, "--program-folder", str(self.programs),
                                "--out", str(self.out), *words, str(self.scenes)], capture_output=True, text=True,
                               check=False)
 
@@ -106,8 +106,8 @@ class Test:
 
     def made_by(self, limit):
         self.stand_in(limit)
-        sys.path.insert(0, str(pathlib.Path(self.script).resolve().parent / "lib"))
-        from bench_rows import made_by
+        sys.path.insert(0, str(pathlib.Path(self.script).resolve().parent))
+        from studies.bench.rows import made_by
         return made_by(self.programs / "raycell", self.scenes / "teapot-s4.nff")
 
     def rewrite(self, name, rows):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of scripts/sweep: sweep_test.py CASE SWEEP_SCRIPT PROGRAM FOLDER [OTHER_FOLDER]. FOLDER is emptied first."""
+"""Tests of scripts/study sweep: sweep_test.py CASE STUDY_SCRIPT PROGRAM FOLDER [OTHER_FOLDER]. FOLDER is emptied first."""
 import json
 import os
 import pathlib
@@ -56,7 +56,7 @@ class Test:
         return path
 
     def words(self, sweep, program, options):
-        return [self.script, sweep, "--quick", "--jobs", "2", "--program", str(program), "--out", str(self.out),
+        return [self.script, "sweep", sweep, "--quick", "--jobs", "2", "--program", str(program), "--out", str(self.out),
                 *options]
 
     def sweep(self, sweep, program, code, *options):
@@ -89,22 +89,23 @@ class Test:
         """All of a sweep whose runs share pictures, and its CSV is that of its own script in OTHER_FOLDER."""
         self.sweep("accuracy", self.program, 0)
         mine, its = ((folder / "accuracy.csv").read_text() for folder in (self.out, pathlib.Path(other)))
-        expect(mine == its, "the same CSV as chart_accuracy's")
+        expect(mine == its, "the same CSV as without Snakemake")
         expect(not list(self.out.glob("cache/*/work")), "no pictures left")
         self.expect_code_of_tables()
-        listed = subprocess.run([pathlib.Path(self.script).parent / "chart_accuracy", *self.words(
-            "", self.program, [])[2:], "--list"], capture_output=True, text=True).stdout
-        expect("26 distinct runs, 8 timed, 26 finished" in listed, "chart_accuracy takes the runs for finished")
+        listed = subprocess.run([self.script, "accuracy", *self.words("", self.program, [])[3:], "--list"], capture_output=True, text=True).stdout
+        expect("26 distinct runs, 8 timed, 26 finished" in listed, "without Snakemake the runs count as finished")
 
     def expect_code_of_tables(self):
         """Tables are made again when anything changes that makes them: all that their modules import of ours."""
         plan, = self.out.glob("**/plan.json")
-        code = {pathlib.Path(path).stem: pathlib.Path(path) for path in json.loads(plan.read_text())["code"]}
-        makers = [path for name, path in code.items() if name.endswith(("_tables", "_pictures", "_rows"))]
+        code = {pathlib.Path(path) for path in json.loads(plan.read_text())["code"]}
+        makers = [path for path in code if path.stem in ("tables", "pictures", "rows")]
+        expect(len(makers) == 5, "the sweep's own three and two that all sweeps share")
         for path in makers:
-            for module in re.findall(r"^(?:from|import) (\w+)", path.read_text(), re.MULTILINE):
-                ours = (path.parent / f"{module}.py").exists()
-                expect(not ours or module in code, f"{module}, which {path.name} imports, among what makes the tables")
+            for package, name in re.findall(r"^from (studies[\w.]*) import (\w+)", path.read_text(), re.MULTILINE):
+                folder = pathlib.Path(self.script).resolve().parent.joinpath(*package.split("."))
+                module = folder / f"{name}.py" if folder.is_dir() else folder.with_suffix(".py")
+                expect(module in code, f"{module}, which {path} imports, among what makes the tables")
 
     def failure(self):
         """A run that fails is named, ends no other, and alone is made again; until then there are no tables."""
@@ -152,7 +153,7 @@ class Test:
             self.stand_in(name, text)
         # Snakemake asks for the state of jobs every ten seconds, but with this.
         self.environment.update(PATH=f"{self.folder}:{os.environ['PATH']}", CI="true")
-        profile = pathlib.Path(self.script).parent / "sweeps" / "slurm"
+        profile = pathlib.Path(self.script).parent / "studies" / "sweeps" / "slurm"
         options = ["--", "--profile", str(profile), "--cores", "2", "--latency-wait", "5", "--group-components", "runs=4"]
         said = self.sweep("time_outs", program, 1, *options)
         expect(len(self.records()) == RUNS - 2 and len(self.calls()) == RUNS, "all others made, each once")

@@ -87,7 +87,7 @@ TEST(DeadlockTb, LeavesNoGraphOfAnEarlierRunBesideAResultWithoutOne) {
 /// The search that the sweep trusts.
 Finished check_knots(const Workshop& workshop, const fs::path& graph) {
     return workshop.run_program("/usr/bin/python3",
-                                {fs::path(RAYCELL_SOURCE_DIR) / "scripts/lib/check_knots.py", graph});
+                                {fs::path(RAYCELL_SOURCE_DIR) / "scripts/studies/deadlock/check_knots.py", graph});
 }
 
 TEST(DeadlockTb, ItsKnotsAreAcceptedByASearchOfTheSweepsOwn) {

@@ -1,10 +1,10 @@
-// scripts/report: a run as one page that needs nothing from outside.
+// scripts/study report: a run as one page that needs nothing from outside.
 #include "program.hpp"
 
 namespace raycell::system_test {
 namespace {
 
-const std::string script = (fs::path(RAYCELL_SOURCE_DIR) / "scripts" / "report").string();
+const std::string script = (fs::path(RAYCELL_SOURCE_DIR) / "scripts" / "study").string();
 
 std::size_t count_of(const std::string& text, const std::string& part) {
     std::size_t count = 0;
@@ -25,7 +25,7 @@ void expect_self_contained(const std::string& page) {
 }
 
 std::string page_of(const Workshop& workshop, const Words& more = {}) {
-    const Finished finished = workshop.run_program(script, joined({"results/a.json"}, more));
+    const Finished finished = workshop.run_program(script, joined({"report", "results/a.json"}, more));
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
     EXPECT_EQ(finished.err, "");
     return read_text(workshop.result("a.html"));
@@ -129,7 +129,7 @@ TEST(ReportPage, TheSameRunGivesTheSamePage) {
     const Workshop workshop;
     workshop.report(own_scene("cornell.nff"), {"--cells", "8x8"});
     const std::string first = page_of(workshop);
-    const Finished finished = workshop.run_program(script, {"results/a.json", "-o", "other.html"});
+    const Finished finished = workshop.run_program(script, {"report", "results/a.json", "-o", "other.html"});
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
     EXPECT_TRUE(read_text(workshop.path() / "other.html") == first);
 }
@@ -147,13 +147,13 @@ TEST(ReportPage, RefusesWhatIsNoRunInOneLine) {
     workshop.write("results/a.cells.csv", "x,y,voxels,edges\n0,0,1,1\n");
     for (const std::string file :
          {"missing.json", "broken.json", "other.json", "list.json", "part.json", "results/a.json"}) {
-        const Finished finished = workshop.run_program(script, {file, "-o", "page.html"});
+        const Finished finished = workshop.run_program(script, {"report", file, "-o", "page.html"});
         EXPECT_EQ(finished.exit_code, 1) << file;
         EXPECT_EQ(finished.error_lines(), 1u) << finished.err;
         EXPECT_TRUE(contains(finished.err, file == "results/a.json" ? "a.cells.csv" : file)) << finished.err;
         EXPECT_FALSE(fs::exists(workshop.path() / "page.html")) << file;
     }
-    EXPECT_EQ(workshop.run_program(script, {}).exit_code, 1);
+    EXPECT_EQ(workshop.run_program(script, {"report"}).exit_code, 1);
 }
 
 }  // namespace

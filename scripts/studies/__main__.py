@@ -1,0 +1,24 @@
+"""What is behind scripts/study: finds the study that the user named and hands it the words after the name."""
+import importlib
+import pathlib
+import sys
+
+STUDIES = {
+    "accuracy": "studies.accuracy.sweep",
+    "deadlock": "studies.deadlock.sweep",
+    "time_outs": "studies.time_outs.sweep",
+    "sweep": "studies.sweeps.snakemake",
+    "ladder": "studies.ladder",
+    "figures": "studies.figures",
+    "stability": "studies.stability",
+    "speed": "studies.speed",
+    "bench": "studies.bench.measure",
+    "report": "studies.report.page",
+}
+
+
+def main(root, name, *words):
+    return importlib.import_module(STUDIES[name]).main(pathlib.Path(root), list(words))
+
+
+sys.exit(main(*sys.argv[1:]))
