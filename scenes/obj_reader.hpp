@@ -1,6 +1,6 @@
 // Reads scenes in Wavefront's OBJ format: polygons and their materials. OBJ has neither view nor light.
 //
-// What leaves the geometry whole is a warning, what does not is an error; docs/scenes.md has the list.
+// What leaves the geometry whole is a warning, what does not is an error; docs/use/scenes.md has the list.
 // Of a `v` line x, y and z are read. Texture coordinates are counted only. A face with a normal at each
 // corner is handed over with normals, one in a smoothing group with those of the group, any other flat. Faces
 // may name vertices that come later. Without a material (or with an unknown one, then with a warning) a face

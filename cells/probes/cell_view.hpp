@@ -1,4 +1,4 @@
-// What probes may see of a cell: the states of its units and what holds a message back. docs/probes.md lists
+// What probes may see of a cell: the states of its units and what holds a message back. docs/use/probes.md lists
 // the values.
 #pragma once
 

@@ -16,7 +16,7 @@ struct ProbeSettings {
     std::uint64_t limit = 1024000000;  ///< bytes of the dump
 };
 
-/// Watches cells of one environment and writes a dump of their signals (docs/probes.md has the list). The
+/// Watches cells of one environment and writes a dump of their signals (docs/use/probes.md has the list). The
 /// values at a cycle's time are those that stand at its end. Watching changes nothing in a run.
 class Probe {
   public:

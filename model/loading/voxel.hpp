@@ -58,7 +58,7 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
 
 constexpr int window_steps = 32;
 
-/// Bits that one voxel takes, without its edges, and bits of one edge; docs/cell.md has the table.
+/// Bits that one voxel takes, without its edges, and bits of one edge; docs/reference/cell.md has the table.
 struct VoxelBits {
     int base = 0;
     int per_edge = 0;

@@ -23,7 +23,7 @@ struct alignas(64) Answer {
 };
 Answer answer_to(const Ray& ray, Answer::Kind kind);
 
-/// Bits of the messages, for an array of width x height cells and M slots; docs/cell.md has the table.
+/// Bits of the messages, for an array of width x height cells and M slots; docs/reference/cell.md has the table.
 struct MessageBits {
     int ray = 0;
     int shadow_ray = 0;  ///< a ray with its distance to the source

@@ -1,4 +1,4 @@
-// What a cell must store to communicate, bit by bit: its buffers and its ray store. docs/cell.md has the
+// What a cell must store to communicate, bit by bit: its buffers and its ray store. docs/reference/cell.md has the
 // table.
 #pragma once
 

@@ -26,7 +26,7 @@ struct ArrayExtent {
     double level = 1;
 };
 
-/// The formats of one machine; docs/numbers.md is their table. F = word_bits - 2. They size messages and
+/// The formats of one machine; docs/reference/numbers.md is their table. F = word_bits - 2. They size messages and
 /// voxels in exact arithmetic too.
 struct Formats {
     int word_bits = 20;

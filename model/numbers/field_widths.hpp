@@ -1,4 +1,4 @@
-// Bits of the fields that messages, slots and voxels share. docs/cell.md has the tables.
+// Bits of the fields that messages, slots and voxels share. docs/reference/cell.md has the tables.
 #pragma once
 
 namespace raycell::field {

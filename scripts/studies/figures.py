@@ -1,4 +1,4 @@
-"""Runs the jobs whose figures the README states, one at a time, and writes results/figures.md."""
+"""Runs the jobs whose figures the README states, one at a time, and writes docs/measured/figures.md."""
 import argparse
 import sys
 
@@ -75,9 +75,9 @@ def main(root, words):
              "cells.\n", "\n".join(jobs.offsets()),
              "\n## The truth against the SPD's published counts\n\n513x513 rays, tree depth 5 with the eye ray as 1, no "
              "cut by weight.\n", "\n".join(jobs.counts())]
-    (root / "results" / "figures.md").write_text("\n".join(parts) + "\n")
+    (programs.measured(root) / "figures.md").write_text("\n".join(parts) + "\n")
     table = programs.run(root / "build" / "operators_tb").output
-    (root / "results" / "operators.md").write_text(
+    (programs.measured(root) / "operators.md").write_text(
         "# The cell's operators\n\nMeasured over the whole range of arguments by `build/operators_tb`, written by "
         "`scripts/study figures`; `--word-bits N` for other words.\n\n" + table)
-    print((root / "results" / "figures.md").read_text())
+    print((programs.measured(root) / "figures.md").read_text())

@@ -68,7 +68,7 @@ def draw(root, cache, results, scene):
     axes[0][0].set_ylabel(f"{scene}, 128x128 cells")
     axes[1][0].set_ylabel("difference from the truth, x8")
     figure.tight_layout()
-    figure.savefig(root / "docs" / "ladder.png", dpi=72)
+    figure.savefig(programs.measured(root) / "ladder.png", dpi=72)
 
 
 def main(root, words):
@@ -76,7 +76,7 @@ def main(root, words):
     parser.add_argument("folder", nargs="?", metavar="SCENE_FOLDER", help="of the SPD scenes")
     folder = programs.spd_folder("ladder", root, parser.parse_args(words).folder)
     program = hashlib.sha256((root / "build" / "raycell").read_bytes()).hexdigest()[:12]
-    cache = root / "results" / "cache" / f"ladder-{program}"
+    cache = programs.measured(root) / "cache" / f"ladder-{program}"
     cache.mkdir(parents=True, exist_ok=True)
     jobs = [(s, r, m) for s in SCENES for r in RUNGS for m in MODES]
     results = {}
@@ -87,7 +87,7 @@ def main(root, words):
             print(f"\r{done} of {len(jobs)} runs", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
 
-    with open(root / "results" / "ladder.csv", "w", newline="") as file:
+    with open(programs.measured(root) / "ladder.csv", "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["scene", "hit", "arithmetic", "exterior", "psnr_db", "wrong_hit_percent", "off_by_0_1_percent",
                          "bits_per_voxel", "voxels", "load_cycles", "trace_cycles"])
@@ -118,6 +118,6 @@ What a rung costs (20 bits, `--exterior host`, the range over the five scenes):
 
 {bits_table(results)}
 """
-    (root / "results" / "ladder.md").write_text(text)
+    (programs.measured(root) / "ladder.md").write_text(text)
     draw(root, cache, results, "teapot-s4")
     print(text)

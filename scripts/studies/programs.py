@@ -22,6 +22,11 @@ class Failed(Exception):
     """A program that ended with another exit code than 0: the command, the code and its last words."""
 
 
+def measured(root):
+    """The folder of the measured tables and charts."""
+    return root / "docs" / "measured"
+
+
 def run(*words):
     """Runs a program. Throws Failed."""
     words = list(map(str, words))

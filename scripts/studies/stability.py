@@ -217,14 +217,14 @@ def main(root, words):
     options = parser.parse_args(words)
     with tempfile.TemporaryDirectory() as folder:
         run = programs.run(options.program, "--csv", folder, "--seed", options.seed)
-        draw(pathlib.Path(folder), root / "docs" / "stability.png")
+        draw(pathlib.Path(folder), programs.measured(root) / "stability.png")
     first, tables = run.output.split("\n", 1)
     text = f"""# Where the methods break
 
 Made by `scripts/study stability`; {first.lower()}. `exact` is double precision, `fixed N` words of N bits; lengths
-are in cell widths. docs/stability.png draws the tables.
+are in cell widths. docs/measured/stability.png draws the tables.
 
 {summary(tables)}
 {tables}"""
-    (root / "results" / "stability.md").write_text(text)
+    (programs.measured(root) / "stability.md").write_text(text)
     print(summary(tables))

@@ -1,4 +1,4 @@
-// name.cells.csv: what each cell held, did and waited for; docs/results.md describes the columns.
+// name.cells.csv: what each cell held, did and waited for; docs/use/results.md describes the columns.
 #pragma once
 
 #include <string>

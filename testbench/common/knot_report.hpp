@@ -12,7 +12,7 @@ namespace raycell {
 /// `deadlock.knot` of the report: the nodes of all knots with their ages, and the edges between them.
 nlohmann::ordered_json knot_json(const RunResult& result);
 
-/// Every node of the wait-for graph with its state, for checkers and other tools. Keys in docs/results.md.
+/// Every node of the wait-for graph with its state, for checkers and other tools. Keys in docs/use/results.md.
 nlohmann::ordered_json waits_json(const RunResult& result);
 
 /// The array with its knots and tails, and the oldest knot enlarged, as SVG.

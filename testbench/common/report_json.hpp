@@ -1,4 +1,4 @@
-// A run's statistics as JSON; the keys are listed in docs/results.md and stable.
+// A run's statistics as JSON; the keys are listed in docs/use/results.md and stable.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -10,7 +10,7 @@ namespace {
 // What the simulator takes for each of what is foretold, nanoseconds, on one core of a server. The terms are
 // those that described 54 runs of the Standard Procedural Databases at 64x64 to 256x256 cells to within a
 // factor of 1.7; those of rays were then fitted again, to teapot-s4 and balls-s2 at 64x64 to 512x512 cells
-// (results/bench_growth.md), when hops had become cheaper.
+// (docs/measured/bench_growth.md), when hops had become cheaper.
 constexpr double load_hop = 150;
 constexpr double load_step = 170;
 constexpr double load_cell = 2000;
@@ -19,7 +19,7 @@ constexpr double ray_voxel = 10;      ///< for every voxel of a mean cell
 constexpr double ray_doubling = 10;   ///< for every doubling of the array above ...
 constexpr double small_array = 4096;  ///< ... so many cells
 constexpr double modules = 2.5;       ///< so many times where every cell is a module
-constexpr double rank = 0.85;         ///< of a rank's time goes into rays, the rest waits (docs/ranks.md)
+constexpr double rank = 0.85;         ///< of a rank's time goes into rays, the rest waits (docs/use/ranks.md)
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Golden vectors as a file (docs/cell_tb.md): what one cell is told, and what it does.
+// Golden vectors as a file (docs/reference/cell_tb.md): what one cell is told, and what it does.
 #pragma once
 
 #include <array>

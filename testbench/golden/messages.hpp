@@ -9,7 +9,7 @@
 
 namespace raycell {
 
-/// "ray FIELDS", "answer FIELDS", "features OBJECT", "span FIELDS", ... (docs/cell_tb.md).
+/// "ray FIELDS", "answer FIELDS", "features OBJECT", "span FIELDS", ... (docs/reference/cell_tb.md).
 std::string text_of(const Words& words, const Message& message);
 
 /// Names of the fields of a kind of message ("ray", "answer", "span", "features", "setup", "end_of_scene"),

@@ -20,7 +20,7 @@ struct Loading {
     NamedFaults checks;
 };
 
-/// Everything but config and the model's wall seconds; the keys are in docs/loading_tb.md.
+/// Everything but config and the model's wall seconds; the keys are in docs/reference/loading_tb.md.
 nlohmann::ordered_json report(const Loading& loading);
 /// A line per column, row, or link of the pipeline.
 std::string columns_csv(const Loading& loading);

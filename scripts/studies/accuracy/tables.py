@@ -1,4 +1,4 @@
-"""results/accuracy.md: every table of it from the rows of accuracy.csv."""
+"""docs/measured/accuracy.md: every table of it from the rows of accuracy.csv."""
 from studies.accuracy.design import (OPERATOR_SCENES, OWN_SCENES, RUNGS, SHADOWS, SIZES_AT_20_BITS, Configuration,
                                    operator_variants)
 from studies.accuracy.rows import fewest_bits, name_of, pareto

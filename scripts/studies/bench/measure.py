@@ -132,8 +132,7 @@ def measure(root, options, results):
 
 def main(root, words):
     options = parse(words)
-    results = options.out or root / "results"
-    charts = options.out or root / "docs"
+    results = charts = options.out or programs.measured(root)
     results.mkdir(parents=True, exist_ok=True)
     if not options.from_csv:
         measure(root, options, results)

@@ -1,4 +1,4 @@
-"""results/deadlock.md: every table of it from the rows of deadlock.csv."""
+"""docs/measured/deadlock.md: every table of it from the rows of deadlock.csv."""
 from studies.deadlock.design import MODES, SAFE_NETWORKS
 from studies.deadlock.rows import smallest_safe
 from studies.tables import NOTHING, count, table
@@ -224,7 +224,7 @@ def sections(results):
              ("Smallest safe M", "The smallest M from which on every run of every seed completes, at every larger M of "
               "the sweep too.", safe_table(results)),
              ("What the smallest safe machine costs", "A cell with four neighbours, bits by the layouts in "
-              "`docs/cell.md`; cycles from the loaded array to the finished picture.", cost_table(results))]
+              "`docs/reference/cell.md`; cycles from the loaded array to the finished picture.", cost_table(results))]
     for load in results.loads:
         parts += [(f"Verdicts: {load}, {'without' if mode == NONE else 'with'} recovery", "",
                    verdict_table(results, load, mode)) for mode in [NONE, POSTPONE]]

@@ -5,6 +5,7 @@ import pathlib
 import signal
 import sys
 
+from studies import programs
 from studies.sweeps.runs import Stopped
 
 
@@ -18,10 +19,10 @@ class Places:
     """Where things lie: in the project, or all in one folder."""
 
     def __init__(self, root, out, name):
-        self.cache = (out or root / "results") / "cache"
+        self.cache = (out or programs.measured(root)) / "cache"
         self.cache.mkdir(parents=True, exist_ok=True)
         self.name = name
-        self.write_to(out or root / "results", out or root / "docs")
+        self.write_to(out or programs.measured(root), out or programs.measured(root))
 
     def write_to(self, tables, charts):
         """Tables and charts go into these folders."""

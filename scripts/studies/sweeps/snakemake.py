@@ -169,7 +169,7 @@ def main(root, words):
     sweep, words = (words[0], words[1:]) if words else ("", [])
     if sweep in ("-h", "--help"):
         print(f"usage: scripts/study sweep {'|'.join(SWEEPS)} [OPTION ...] [-- SNAKEMAKE_OPTION ...]\n"
-              "scripts/study sweep SWEEP --help lists the options; docs/sweeps.md has examples")
+              "scripts/study sweep SWEEP --help lists the options; docs/use/sweeps.md has examples")
         return 0
     if sweep not in SWEEPS:
         sys.exit(f"study sweep: expected one of {', '.join(SWEEPS)}, not '{sweep}'")

@@ -1,4 +1,4 @@
-"""results/time_outs.md, from the rows of time_outs.csv."""
+"""docs/measured/time_outs.md, from the rows of time_outs.csv."""
 import textwrap
 
 from studies.time_outs.design import LOAD_WORDS, TIME_OUTS, name_of

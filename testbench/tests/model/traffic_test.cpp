@@ -309,7 +309,7 @@ TEST(StorageBits, OfBuffersFollowTheNetworks) {
 }
 
 TEST(StorageBits, OfASlotAreThoseOfTheTable) {
-    const Sized sized;  // docs/cell.md: 128x128 cells, M = 8, 20-bit words, a cube up to 256 cells deep
+    const Sized sized;  // docs/reference/cell.md: 128x128 cells, M = 8, 20-bit words, a cube up to 256 cells deep
     const SlotBits bits = slot_bits(sized.picture, sized.machine, sized.formats, 1);
     EXPECT_EQ(bits.control, 3 + 3 + 10);
     EXPECT_EQ(bits.ray, 24 + 2 + 6 + 20 + 60);
