@@ -128,7 +128,6 @@ class alignas(64) Cell final : public Client {
     std::uint32_t answers_to_move() const {
         return (pending_ & ~router_.parked()) >> InputPorts::answer_bits;
     }
-    void move_replies(Cycle now);
     void move_rays(Cycle now);
     // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
     // then the slots' child registers (last, because the store may grow while places are gone through).
@@ -146,22 +145,23 @@ class alignas(64) Cell final : public Client {
     bool send_answer(const Answer& answer, Cycle now);
     // cell_overdue.cpp
     void move_overdue(Cycle now);
-    // cell_shade.cpp: slots, own rays, shading unit
-    bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
-    bool accept_direct(RayPacket& packet, std::size_t place, Cycle now);
+    // cell_deliver.cpp: answers that are home
     void deliver(const Answer& answer, Cycle now);
     void deliver_to_slot(const Answer& answer, Cycle now);
-    void feed_children(Cycle now);
+    // cell_inject.cpp: own rays and children of slots
     void feed_own(Cycle now);
+    void feed_children(Cycle now);
     RayPacket* next_child(Slot& slot, std::uint32_t index, Cycle now);
-    bool has_replies() const { return replies_ > 0; }
-    void finish_shading(Cycle now);
-    void start_shading(Cycle now);
-    void begin_shade(std::uint32_t index, Cycle now);
-    void begin_set_up(std::uint32_t index, Cycle now);
-    void begin_direct(RayPacket& packet, Cycle now);
-    void release_slot(std::uint32_t index, Cycle now);
     RayPacket* launch(const Ray& ray, const Ray* parent);
+    // cell_shade.cpp: hits, the shading unit's jobs, replies
+    bool accept_hit(RayPacket& packet, std::size_t place, Cycle now);
+    bool accept_direct(RayPacket& packet, std::size_t place, Cycle now);
+    void begin_direct(RayPacket& packet, Cycle now);
+    void start_shading(Cycle now);
+    void finish_shading(Cycle now);
+    bool has_replies() const { return replies_ > 0; }
+    void move_replies(Cycle now);
+    void release_slot(std::uint32_t index, Cycle now);
 
     // cell_statistics.cpp: what waits, and for what
     Wait wait_of(const RayPacket& packet, std::size_t place) const {
@@ -231,8 +231,8 @@ class alignas(64) Cell final : public Client {
     static_assert(AgingArbiter::others == 1U << (InputPorts::answer_bits - 1) &&
                   InputPorts::most_ray_inputs + 1 < InputPorts::answer_bits);  // a bit that no place has
 
-    // By cache lines: what every step looks at comes first, `hot_lines` of it; what few cells or reports
-    // need, last.
+    // Members are ordered by cache line: everything step() reads comes first, `hot_lines` of it; what few
+    // cells or reports need, last. Cell::fetch() checks it.
     static constexpr std::size_t hot_lines = 7;
     Environment& env_;
     CellHost* host_ = nullptr;
@@ -268,7 +268,7 @@ class alignas(64) Cell final : public Client {
     Injector injector_;
     ShadingUnit shading_;
 
-    CellStatistics statistics_;  // its first line is the last hot one
+    CellStatistics statistics_;  // its first counters are the last hot ones
 
     CellStore store_;
     RayStore ray_store_;

@@ -1,5 +1,6 @@
 // Asking for memory ahead: in a large array a hop costs what the caches miss, not what it computes.
 #include <algorithm>
+#include <cstddef>
 
 #include "cells/cell.hpp"
 
@@ -8,6 +9,12 @@ namespace raycell {
 /// What every step looks at: it comes first in a cell.
 void Cell::fetch(const void* cell) {
     constexpr std::size_t line = 64;
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Winvalid-offsetof"
+    // What follows the first counters of the statistics is cold.
+    static_assert(offsetof(Cell, statistics_) + offsetof(CellStatistics, stalls) <= hot_lines * line);
+    static_assert(offsetof(Cell, store_) > hot_lines * line);
+#pragma GCC diagnostic pop
     const char* at = static_cast<const char*>(cell);
     for (std::size_t i = 0; i < hot_lines; ++i) fetch_line(at + i * line);
 }

@@ -67,7 +67,7 @@ class TimedStarvation : public ::testing::TestWithParam<std::tuple<int, int>> {
         return m;
     }
     static constexpr Cycle cycles = 600000;
-    /// Nobody is passed over for much longer than Cell::patience, 65536 cycles: this is half of the turns
+    /// Nobody is passed over for much longer than AgingArbiter::patience, 65536 cycles: this is half of the turns
     /// that leaves.
     static constexpr int turns = 4;
 };

@@ -1,0 +1,68 @@
+// Answers that have come home: to the pixel, to the slot whose child or verdict they are, to a voxel's shadow
+// bits (paper, sections 3.2 and 4.1).
+#include "cells/cell.hpp"
+
+namespace raycell {
+
+void Cell::deliver(const Answer& answer, Cycle now) {
+    store_port_ = now;
+    ++env_.counters.answers_delivered;
+    record(now, CellEvent::deliver, std::uint32_t(answer.id), answer.id, std::uint32_t(answer.kind));
+    if (answer.kind != Answer::Kind::postponed) env_.counters.last_progress = now;
+    want(now + 1);
+    const std::uint64_t bit = std::uint64_t(1) << answer.child;
+    switch (answer.ray_kind) {
+        case RayKind::primary: {
+            if (answer.kind == Answer::Kind::postponed) {
+                injector_.primary_postponed(env_.machine, answer.id, now);
+                return;
+            }
+            Pixel& pixel = env_.picture.at(x_, y_);
+            pixel.colour = answer.colour;
+            pixel.cycle = std::uint32_t(now - env_.phase_start);
+            injector_.primary_answered();
+            ++env_.counters.pixels_done;
+            return;
+        }
+        case RayKind::precast:
+            store_.lit[answer.slot] &= ~bit;
+            return;
+        case RayKind::memo:
+            if (answer.kind == Answer::Kind::blocked) store_.lit[answer.slot] &= ~bit;
+            store_.known[answer.slot] |= bit;
+            for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {  // others may have waited for it too
+                Slot& slot = ray_store_[i];
+                if (slot.state == Slot::State::waiting && slot.packet->visit.hit.voxel == answer.slot)
+                    slot.wait = {now, Stall::shading};
+            }
+            slot_changed();
+            return;
+        case RayKind::reflected:
+        case RayKind::refracted:
+        case RayKind::shadow:
+            deliver_to_slot(answer, now);
+            return;
+    }
+}
+
+void Cell::deliver_to_slot(const Answer& answer, Cycle now) {
+    Slot& slot = ray_store_[answer.slot];
+    slot.wait = {now, Stall::shading};  // counts if it was the last answer missing
+    slot_changed();
+    if (answer.ray_kind == RayKind::shadow) {
+        const std::uint64_t bit = std::uint64_t(1) << answer.child;
+        slot.awaited &= ~bit;
+        if (answer.kind == Answer::Kind::lit) slot.lit |= bit;
+        return;
+    }
+    const std::size_t child = answer.child;
+    if (answer.kind == Answer::Kind::postponed) {
+        slot.send_child[child] = true;
+        slot.retry[child].postponed(env_.machine, answer.id, now);
+        return;
+    }
+    slot.await_child[child] = false;
+    slot.colour[child] = answer.colour;
+}
+
+}  // namespace raycell
