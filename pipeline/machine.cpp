@@ -143,7 +143,7 @@ bool Machine::watch(void* self, Cycle now) {
         env.draining = false;
         if (env.observer) env.observer->draining(false, now);
         machine.drain_start_ = never;
-        for (Cell& cell : machine.array_.cells()) env.scheduler.wake(cell, now + 1);
+        machine.array_.wake_all(now + 1);
     }
     constexpr std::uint64_t calls_between_reports = 4096;
     if (machine.progress_ && ++machine.watch_calls_ % calls_between_reports == 0) {

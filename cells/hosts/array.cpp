@@ -48,6 +48,13 @@ void Array::make_hosts(const Granularity& granularity) {
     }
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         Cell& cell = cells_[i];
+        if (granularity.own_cells) {
+            const std::string name = name_at("own_cell", cell.x(), cell.y());
+            if (auto own = granularity.own_cells(name.c_str(), environment_, cell.x(), cell.y())) {
+                sockets_[i] = std::move(own);
+                continue;
+            }
+        }
         if (granularity.is_module(cell.x(), cell.y())) {
             modules_[i] =
                 std::make_unique<CellModule>(name_at("cell", cell.x(), cell.y()).c_str(), environment_, cell);
@@ -79,8 +86,8 @@ void Array::make_link(int x, int y, Side side) {
     if (to_x < 0 || to_x >= environment_.width() || !environment_.share.contains(to_y)) return;
     Link& link = add_link(to_x, to_y, side);
     stall(link, x, y, side);
-    link.connect_source(cell(x, y));
-    link.connect_sink(cell(to_x, to_y));
+    link.connect_source(client(x, y));
+    link.connect_sink(client(to_x, to_y));
     bind_out(x, y, side, link);
     bind_in(to_x, to_y, opposite(side), link);
 }
@@ -116,14 +123,14 @@ void Array::make_half_link_out(SplitLinks& split, int x, int y, Side side) {
     Link& link = split.make_source(environment_.scheduler, environment_.classes.count,
                                    environment_.machine.buffer_depth, environment_.classes.used_over(side));
     stall(link, x, y, side);
-    link.connect_source(cell(x, y));
+    link.connect_source(client(x, y));
     bind_out(x, y, side, link);
 }
 
 void Array::make_half_link_in(SplitLinks& split, int x, int y, Side from) {
     Link& link = add_link(x, y, opposite(from));
     split.add_sink(link);
-    link.connect_sink(cell(x, y));
+    link.connect_sink(client(x, y));
     bind_in(x, y, from, link);
 }
 
@@ -133,8 +140,21 @@ CellModule* Array::module(int x, int y) {
     return found == modules_.end() ? nullptr : found->second.get();
 }
 
+CellSocket* Array::socket(int x, int y) {
+    if (sockets_.empty()) return nullptr;
+    const auto found = sockets_.find(index(x, y));
+    return found == sockets_.end() ? nullptr : found->second.get();
+}
+
+Client& Array::client(int x, int y) {
+    CellSocket* own = socket(x, y);
+    return own ? static_cast<Client&>(*own) : cell(x, y);
+}
+
 void Array::bind_in(int x, int y, Side side, Link& link) {
-    if (CellModule* host = module(x, y)) {
+    if (CellSocket* own = socket(x, y)) {
+        own->in[std::size_t(side)].bind(link);
+    } else if (CellModule* host = module(x, y)) {
         host->in[std::size_t(side)].bind(link);
     } else {
         cell(x, y).connect_in(side, link);
@@ -142,7 +162,9 @@ void Array::bind_in(int x, int y, Side side, Link& link) {
 }
 
 void Array::bind_out(int x, int y, Side side, Link& link) {
-    if (CellModule* host = module(x, y)) {
+    if (CellSocket* own = socket(x, y)) {
+        own->out[std::size_t(side)].bind(link);
+    } else if (CellModule* host = module(x, y)) {
         host->out[std::size_t(side)].bind(link);
     } else {
         cell(x, y).connect_out(side, link);
@@ -155,8 +177,10 @@ void Array::join_border(int x, int y, Side side, Link& from_outside, Link& to_ou
 }
 
 void Array::join_row(int y, Link& load) {
-    load.connect_sink(cell(0, y));
-    if (CellModule* host = module(0, y)) {
+    load.connect_sink(client(0, y));
+    if (CellSocket* own = socket(0, y)) {
+        own->load_in.bind(load);
+    } else if (CellModule* host = module(0, y)) {
         host->load_in.bind(load);
     } else {
         cell(0, y).connect_load(load);
@@ -166,7 +190,7 @@ void Array::join_row(int y, Link& load) {
 /// A module's ports know their links only when elaboration ends, so it sees to its cell itself.
 void Array::end_of_elaboration() {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
-        if (modules_.count(i) == 0) cells_[i].elaborate();
+        if (modules_.count(i) == 0 && sockets_.count(i) == 0) cells_[i].elaborate();
     }
 }
 
@@ -185,11 +209,18 @@ void Array::make_runs() {
 
 void Array::begin_phase() {
     if (environment_.phase != Phase::load) make_runs();
-    const Cycle next = environment_.scheduler.now() + 1;
-    for (Cell& cell : cells_) {
-        cell.begin_phase();
-        environment_.scheduler.wake(cell, next);
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        if (sockets_.count(i) > 0) {
+            sockets_[i]->begin_phase();
+        } else {
+            cells_[i].begin_phase();
+        }
     }
+    wake_all(environment_.scheduler.now() + 1);
+}
+
+void Array::wake_all(Cycle cycle) {
+    for (Cell& cell : cells_) environment_.scheduler.wake(client(cell.x(), cell.y()), cycle);
 }
 
 std::uint64_t Array::schedule_hash() const {

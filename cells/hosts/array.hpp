@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cells/hosts/cell_module.hpp"
+#include "cells/hosts/cell_socket.hpp"
 #include "cells/hosts/cell_tile.hpp"
 #include "cells/memory/stable_array.hpp"
 
@@ -20,6 +21,8 @@ struct Granularity {
     /// Cells: one activation of SystemC's for so many squared. The larger, the longer the list of cells to
     /// run in a cycle, and the farther ahead a tile can ask for memory.
     int tile_side = 4096;
+    /// Cells of somebody else's, for those places where it makes one.
+    CellFactory own_cells;
 
     bool is_module(int x, int y) const;
     /// Number of modules in an array.
@@ -39,6 +42,10 @@ class Array : public sc_core::sc_module {
     const StableArray<Cell>& cells() const { return cells_; }
     /// Null for a cell in a tile.
     CellModule* module(int x, int y);
+    /// The module that somebody else put in the place of a cell, which then stands idle; null if none.
+    CellSocket* socket(int x, int y);
+    /// Who is woken by the links of a place: its cell, or the module that stands there.
+    Client& client(int x, int y);
     std::size_t tiles() const { return tiles_.size(); }
 
     StableArray<Link>& links() { return links_; }
@@ -55,6 +62,8 @@ class Array : public sc_core::sc_module {
 
     /// Begins the environment's phase: every cell runs in the next cycle.
     void begin_phase();
+    /// Every cell runs in this cycle.
+    void wake_all(Cycle cycle);
 
     /// All cells' schedules, joined in the order of the cells.
     std::uint64_t schedule_hash() const;
@@ -83,6 +92,7 @@ class Array : public sc_core::sc_module {
     StableArray<Cell> cells_;
     std::vector<std::unique_ptr<CellTile>> tiles_;
     std::map<std::size_t, std::unique_ptr<CellModule>> modules_;  ///< by the cell's index
+    std::map<std::size_t, std::unique_ptr<CellSocket>> sockets_;  ///< by the cell's index
     StableArray<Link> links_;
     StableArray<DepthRun> runs_;       ///< of all cells' voxels, row by row
     std::vector<std::uint32_t> ways_;  ///< by link: index of its sink · 4 + side of its source

@@ -48,8 +48,8 @@ void Exterior::join(Array& array, RankExchange* ranks) {
             split->add_source(*in);
         } else {
             env.stall(*out, out->name());
-            out->connect_source(array.cell(x, y));
-            in->connect_sink(array.cell(x, y));
+            out->connect_source(array.client(x, y));
+            in->connect_sink(array.client(x, y));
             array.join_border(x, y, side, *in, *out);
         }
         ports_.push_back({x, y, out, in});
@@ -65,8 +65,8 @@ void Exterior::join_remote(Array& array, Environment& env, RankExchange& ranks) 
         out.set_name(name_border(x, y, ".out"));
         env.stall(out, out.name());
         Link& in = split.make_sink(env.scheduler, classes, env.machine.buffer_depth);
-        out.connect_source(array.cell(x, y));
-        in.connect_sink(array.cell(x, y));
+        out.connect_source(array.client(x, y));
+        in.connect_sink(array.client(x, y));
         array.join_border(x, y, side, in, out);
     });
 }
