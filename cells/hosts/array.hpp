@@ -22,7 +22,7 @@ struct Granularity {
     /// run in a cycle, and the farther ahead a tile can ask for memory.
     int tile_side = 4096;
     /// Cells of somebody else's, for those places where it makes one.
-    CellFactory own_cells;
+    CellFactory own_cells = {};
 
     bool is_module(int x, int y) const;
     /// Number of modules in an array.
