@@ -39,8 +39,8 @@ class alignas(64) Cell final : public Client {
     /// All links are connected.
     void elaborate();
 
-    // Ask for the memory that the next step will touch, for hosts that know some steps ahead which cells they
-    // run: each may read what the one before asked for. None changes anything.
+    // Prefetch hints for the next step; no side effects. A host that knows its next cells calls them some
+    // steps ahead, in this order: each may read what the one before has brought.
     void fetch() const { fetch(this); }
     static void fetch(const void* cell);
     void fetch_links() const;

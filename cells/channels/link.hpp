@@ -39,10 +39,10 @@ class LinkIn : virtual public sc_core::sc_interface {
     virtual int occupancy(int index) const = 0;
 };
 
-/// The channel. Writes and reads of a cycle show in the next one, so the order in which cells run does not
-/// matter. Final, so that a cell's calls need no table; an array has four of them per cell, so what few links
-/// have is kept apart, and classes that a link never carries have no buffer. Laid out by cache lines, which
-/// are what a hop costs in a large array: what every hop needs in the first, then a line for each buffer.
+/// The channel. Writes and reads of a cycle become visible in the next one, so results do not depend on the
+/// order in which cells run. Declared final so that calls from a cell are not virtual. An array has four
+/// links per cell: data that few links need is kept in Extras, and classes that a link never carries have no
+/// buffer. Members are ordered by cache line: what every hop needs first, then one line for each buffer.
 class alignas(64) Link final : public LinkOut, public LinkIn {
   public:
     struct ClassStatistics {

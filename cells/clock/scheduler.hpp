@@ -88,8 +88,7 @@ class Scheduler : public sc_core::sc_module {
         if (cycle < scheduled_) schedule(cycle);
     }
 
-    /// Puts the time of a run that has stopped, without running anybody: for looking at it as it would be
-    /// later.
+    /// Sets the clock of a stopped run without activating any client: to look at it as it would be later.
     void set_now(Cycle now) { now_ = now; }
 
     /// Has the cycle that was run last sampled; after sc_start(), when no cycle comes that would do it.

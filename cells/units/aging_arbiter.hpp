@@ -1,5 +1,5 @@
-// Aging: who has waited for too long goes first, whatever it is: the fairness that deadlock.md, step 5, asks
-// of a cell. Without it a stream of notices can starve what would end it.
+// Aging: a ready message that has lost arbitration for too long wins over all others. The proof needs it
+// (deadlock.md, step 5): without it a stream of postponed notices can starve the messages that would end it.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,13 @@
 
 namespace raycell {
 
-/// Knows when there may be something overdue, and puts it in order. What has waited for more than `patience`
-/// cycles when an epoch began goes before all others, oldest first. It is looked for when an epoch begins in
-/// which there may be any, and in every step while there is: so it does not matter how often the cell runs.
+/// Finds overdue messages and puts them in order. A message is overdue if it had waited for more than
+/// `patience` cycles when the current epoch began; overdue ones move before all others, oldest first. The
+/// cell looks for them at the start of each epoch in which there may be any, and in every step while there
+/// are some, so the result does not depend on how often the cell runs.
 class AgingArbiter {
   public:
-    static constexpr Cycle patience = 65536;
+    static constexpr Cycle patience = 65536;           ///< starvation bound, cycles
     static constexpr Cycle epoch = patience / 8;       ///< ages are counted in these
     static constexpr std::uint32_t others = 1U << 11;  ///< a bit that stands for what was not looked at
 

@@ -9,7 +9,7 @@
 
 namespace raycell {
 
-/// What several processes of one run can't do, or this program can't do with several. Exit code 2.
+/// An operation that is not supported with more than one rank, or not by this program. Exit code 2.
 struct RanksRefused : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
