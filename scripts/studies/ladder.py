@@ -7,12 +7,7 @@ import json
 import os
 import sys
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-
-from studies import programs  # noqa: E402
+from studies import programs
 
 SCENES = ["teapot-s4", "balls-s2", "mount-s4", "tetra-s4", "gears-s1"]
 RUNGS = ["edge", "mask", "plane", "interval", "depth"]
@@ -54,6 +49,9 @@ def bits_table(results):
 
 
 def draw(root, cache, results, scene):
+    import matplotlib  # only where it is needed
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
     figure, axes = plt.subplots(2, len(RUNGS), figsize=(3.1 * len(RUNGS), 6.6))
     for column, rung in enumerate(reversed(RUNGS)):
         prefix = cache / f"{scene}.{rung}.host"

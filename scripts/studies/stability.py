@@ -4,12 +4,7 @@ import csv
 import pathlib
 import tempfile
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-
-from studies import programs  # noqa: E402
+from studies import programs
 
 COLOURS = {"exact": "black", "fixed 32": "tab:purple", "fixed 24": "tab:blue", "fixed 20": "tab:green",
            "fixed 16": "tab:orange", "fixed 12": "tab:red", "fixed 8": "tab:brown",
@@ -186,6 +181,9 @@ CHARTS = [slopes, dda_drift, span_drift, normals, grazing, critical, mirrors, of
 
 
 def draw(folder, file):
+    import matplotlib  # only where it is needed
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
     figure, axes = plt.subplots(4, 3, figsize=(14, 15))
     for axis, chart in zip(axes.flat, CHARTS):
         chart(axis, Study(folder / f"{chart.__name__}.csv"))

@@ -6,12 +6,10 @@ import pathlib
 import statistics
 import sys
 
+from studies import programs
 from studies.bench.growth import FIELDS as GROWTH_FIELDS
 from studies.bench.growth import KEYS as GROWTH_KEYS
-from studies import programs
 from studies.bench.growth import Design, measure_growth, scenes_of
-from studies.bench.growth_tables import line_rows, write_growth_chart, write_growth_table, write_line_chart
-from studies.bench.tables import write_chart, write_table
 from studies.bench.rows import Rows, made_by, read_numbers
 
 CASES = ["sc_fifo", "cell_module", "cell_tile", "bare_cells", "bare_tokens"]
@@ -136,6 +134,9 @@ def main(root, words):
     results.mkdir(parents=True, exist_ok=True)
     if not options.from_csv:
         measure(root, options, results)
+    # Matplotlib only where it is needed.
+    from studies.bench.growth_tables import line_rows, write_growth_chart, write_growth_table, write_line_chart
+    from studies.bench.tables import write_chart, write_table
     rows = read_numbers(results / "bench.csv", {"case"})
     if rows:
         medians = {}
