@@ -7,7 +7,7 @@ std::uint32_t TraversalUnit::test(RayPacket& packet, const Setting& setting, con
     packet.visit = visit_cell(setting.store, packet.ray, context, setting.runs, setting.run_count);
     packet.need =
         need_of(packet.ray, packet.visit, setting.store, setting.x, setting.y, setting.classes, context);
-    return packet.ray.outside ? costs.walk_step : visit_cycles(packet.visit, context.settings, costs);
+    return visit_cycles(packet.visit, context.settings, costs);
 }
 
 }  // namespace raycell
