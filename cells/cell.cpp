@@ -148,16 +148,12 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     if (!packet || packet->stage != RayPacket::Stage::untested) return false;
     settle(wait_of(*packet, place), packet->ray.id, now);
     packet->wait.cause = Stall::none;
-    const std::uint32_t cycles = unit_cycles(TraversalUnit::test(
-        *packet, {store_, runs_, run_count_, env_.context, env_.classes, x_, y_}, env_.costs()));
+    const std::uint32_t cycles = unit_cycles(
+        TraversalUnit::test(*packet, {store_, runs_, env_.context, env_.classes, x_, y_}, env_.costs()));
     env_.counters.rays.ties += packet->visit.event == Visit::Event::hit && packet->visit.hit.tied;
     env_.counters.traversal_cycles += cycles;
     statistics_.traversal_cycles += cycles;
     traversal_.start(*packet, std::uint32_t(place), now + cycles);
-    if (place <= own_place()) {
-        const Need& need = packet->need;
-        ways_[place] = Way(need.kind == Need::Kind::output ? int(need.side) : no_way, need.index);
-    }
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
            std::uint32_t(packet->visit.event));
     want(traversal_.done());

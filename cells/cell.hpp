@@ -9,7 +9,6 @@
 #include "cells/cell_host.hpp"
 #include "cells/channels/link.hpp"
 #include "cells/environment.hpp"
-#include "cells/memory/fetch_line.hpp"
 #include "cells/units/aging_arbiter.hpp"
 #include "cells/units/injector.hpp"
 #include "cells/units/input_ports.hpp"
@@ -39,17 +38,9 @@ class alignas(64) Cell final : public Client {
     /// All links are connected.
     void elaborate();
 
-    // Prefetch hints for the next step; no side effects. A host that knows its next cells calls them some
-    // steps ahead, in this order: each may read what the one before has brought.
-    void fetch() const { fetch(this); }
-    static void fetch(const void* cell);
-    void fetch_links() const;
-    void fetch_ahead() const override { fetch_links(); }
-    void fetch_messages() const;
-    void fetch_ways() const;
-
     /// Woken: the host is to call step().
     void activate() override { host_->activate(*this); }
+    void foreseen() const override { host_->foresee(*this); }
 
     /// Begins the environment's phase in the next cycle.
     void begin_phase();
@@ -58,10 +49,7 @@ class alignas(64) Cell final : public Client {
     Cycle step(Cycle now);
 
     /// The depths of the store's voxels, which must not change any more: kept by the caller.
-    void set_runs(const DepthRun* runs) {
-        runs_ = runs;
-        run_count_ = std::uint32_t(store_.voxels.size());
-    }
+    void set_runs(const DepthRun* runs) { runs_ = {runs, std::uint32_t(store_.voxels.size())}; }
 
     const CellStore& store() const { return store_; }
     CellStore& store() { return store_; }
@@ -213,27 +201,12 @@ class alignas(64) Cell final : public Client {
     std::uint32_t bit_of(std::size_t place) const { return place <= own_place() ? 1U << unsigned(place) : 0; }
     void unpark(Cycle now);
     std::uint32_t bit_in_test() const { return traversal_.packet() ? bit_of(traversal_.place()) : 0; }
-    static constexpr int no_way = 15;
-    /// The output that a decided ray at this place wants, for fetch_links(): side and class.
-    struct Way {
-        std::uint8_t side : 4;
-        std::uint8_t index : 4;
-        Way(int to = no_way, int buffer_class = 0)
-            : side(std::uint8_t(to & 15)), index(std::uint8_t(buffer_class & 15)) {}
-    };
-    void fetch_sender(std::size_t side, std::uint8_t place) const;
-    /// Asks for the line that a message over a link touches in the cell at its other end. Nobody reads what
-    /// is beyond the border: a hint may name any address.
-    void fetch_neighbour(std::size_t side) const {
-        fetch_line(reinterpret_cast<const char*>(this) + env_.neighbours[side]);
-    }
 
     static_assert(AgingArbiter::others == 1U << (InputPorts::answer_bits - 1) &&
                   InputPorts::most_ray_inputs + 1 < InputPorts::answer_bits);  // a bit that no place has
 
-    // Members are ordered by cache line: everything step() reads comes first, `hot_lines` of it; what few
-    // cells or reports need, last. Cell::fetch() checks it.
-    static constexpr std::size_t hot_lines = 7;
+    // Everything step() reads comes first; what few cells or reports need, last. Prefetch checks it.
+    friend class Prefetch;
     Environment& env_;
     CellHost* host_ = nullptr;
     Wakeup wakeup_;
@@ -256,15 +229,13 @@ class alignas(64) Cell final : public Client {
     bool moved_ : 1;                  ///< this cycle: something went on, or came home
     bool blocked_ : 1;                ///< this cycle: something wanted to and could not
 
-    const DepthRun* runs_ = nullptr;  ///< of the voxels, once they are all there
-    std::uint32_t run_count_ = 0;
+    DepthRuns runs_;  ///< of the voxels, once they are all there
     Fnv hash_{0};
     Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
     TimeOut time_out_;
     Router router_;
     InputPorts inputs_;
 
-    std::array<Way, InputPorts::most_ray_inputs + 1> ways_;  ///< by place, of inputs and the own ray
     Injector injector_;
     ShadingUnit shading_;
 

@@ -30,15 +30,6 @@ void join(Counters& sum, const Counters& other) {
     std::memcpy(static_cast<void*>(&sum), a, sizeof sum);
 }
 
-void Environment::find_buffer_places() {
-    for (int side = 0; side < side_count; ++side) {
-        for (int index = 0; index < classes.count; ++index) {
-            buffer_places[std::size_t(side)][std::size_t(index)] =
-                Link::place_of(index, classes.used_over(Side(side)));
-        }
-    }
-}
-
 int Environment::load_bits(const LoadItem& item) const {
     switch (item.kind) {
         case LoadItem::Kind::setup:

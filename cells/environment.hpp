@@ -66,13 +66,6 @@ struct Environment {
     MessageBits bits;
     LinkCycles cycles;  ///< for `bits`: no division in every hop
     BufferClasses classes;
-    /// Where the buffer of a class stands in the links between cells, by the side of their source or, the
-    /// same, of the cell that they come to: Link::fetch().
-    std::array<std::array<std::uint8_t, 5>, side_count> buffer_places{};
-    /// Bytes from a cell to its neighbour over each side, in an array that keeps its cells row by row: for
-    /// asking for their memory, no more: where rows above or below are another rank's, it is some other
-    /// cell's. Zero where there is no array.
-    std::array<std::ptrdiff_t, side_count> neighbours{};
     /// Cycles from an answer's arrival until its cell need look at it; 0 where it may stand in a ray's way.
     int answer_routing;
     const ArrayShare share;
@@ -107,9 +100,7 @@ struct Environment {
           share(part ? *part : ArrayShare(scene.frame.height)),
           scheduler(s),
           picture(p),
-          pixel_hops(p.pixels.size()) {
-        find_buffer_places();
-    }
+          pixel_hops(p.pixels.size()) {}
 
     int width() const { return context.scene.frame.width; }
     int height() const { return context.scene.frame.height; }
@@ -118,9 +109,6 @@ struct Environment {
     int load_bits(const LoadItem& item) const;
     /// Gives a link its random stalls, if there are any, by its name.
     void stall(Link& link, const std::string& name) const;
-
-  private:
-    void find_buffer_places();
 };
 
 }  // namespace raycell

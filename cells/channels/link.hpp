@@ -11,7 +11,6 @@
 #include "cells/channels/message.hpp"
 #include "cells/channels/observer.hpp"
 #include "cells/clock/scheduler.hpp"
-#include "cells/memory/fetch_line.hpp"
 
 namespace raycell {
 
@@ -147,24 +146,13 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     /// Bytes of an unwatched link with empty buffers.
     static std::size_t bytes(std::uint32_t used);
 
-    /// Asks for the memory of a hop ahead: the link's first line and that of its `place`th buffer, which it
-    /// takes on trust rather than read.
-    void fetch(std::size_t place) const {
-        fetch_line(this);
-        fetch_buffer(place);
-    }
-    /// The buffer's alone: all that a sink touches of a link.
-    void fetch_buffer(std::size_t place) const {
-        if (place < own_buffers) fetch_line(&buffers_[place]);
-    }
-    /// And what it takes to wake the source.
-    void fetch_source() const { fetch_line(this); }
     /// The place of a class's buffer in a link that carries the classes `used`.
     static constexpr std::uint8_t place_of(int index, std::uint32_t used) {
         return std::uint8_t(__builtin_popcount(used & ((1U << unsigned(index)) - 1)));
     }
 
   private:
+    friend class Prefetch;
     using Entry = Held;
     struct alignas(64) Buffer {
         union {

@@ -11,7 +11,7 @@
 namespace raycell {
 
 /// A ray and what the cell that it stands in knows about it already.
-struct alignas(64) RayPacket {
+struct RayPacket {
     enum class Stage : std::uint8_t { untested, in_test, decided };
     Ray ray;
     Visit visit;

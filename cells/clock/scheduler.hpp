@@ -19,8 +19,8 @@ class Client {
     virtual ~Client() = default;
     /// Makes the client's process run in this evaluation phase.
     virtual void activate() = 0;
-    /// Asks for memory that it will touch when it is activated soon: changes nothing.
-    virtual void fetch_ahead() const {}
+    /// Whoever runs it sees that it will be activated soon.
+    virtual void foreseen() const {}
     /// Last cycle in which it was activated; `never` before the first.
     Cycle woken() const { return woken_; }
 

@@ -22,15 +22,13 @@ std::size_t Granularity::modules(int width, int height) const {
 }
 
 Array::Array(sc_core::sc_module_name name, Environment& environment, const Granularity& granularity)
-    : sc_module(name), environment_(environment) {
+    : sc_module(name), environment_(environment), prefetch_(environment.classes, environment.width()) {
     const int width = environment.width();
     const ArrayShare& share = environment.share;
     cells_.reserve(std::size_t(width) * share.rows().size());
     for (const int y : share.rows()) {
         for (int x = 0; x < width; ++x) cells_.emplace_back(environment, x, y);
     }
-    const auto column = std::ptrdiff_t(sizeof(Cell));
-    environment.neighbours = {column, column * width, -column, -column * width};
     make_hosts(granularity);
     make_links();
 }
@@ -43,8 +41,8 @@ void Array::make_hosts(const Granularity& granularity) {
     const int columns = (environment_.width() + tile_side - 1) / tile_side;
     const int rows = (int(environment_.share.rows().size()) + tile_side - 1) / tile_side;
     for (int i = 0; !granularity.every_cell && i < columns * rows; ++i) {
-        tiles_.push_back(
-            std::make_unique<CellTile>(name_at("tile", i % columns, i / columns).c_str(), environment_));
+        const std::string name = name_at("tile", i % columns, i / columns);
+        tiles_.push_back(std::make_unique<CellTile>(name.c_str(), environment_, prefetch_));
     }
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         Cell& cell = cells_[i];

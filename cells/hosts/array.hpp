@@ -47,6 +47,8 @@ class Array : public sc_core::sc_module {
     /// Who is woken by the links of a place: its cell, or the module that stands there.
     Client& client(int x, int y);
     std::size_t tiles() const { return tiles_.size(); }
+    /// For whoever runs the cells instead.
+    const Prefetch& prefetch() const { return prefetch_; }
 
     StableArray<Link>& links() { return links_; }
     const StableArray<Link>& links() const { return links_; }
@@ -89,6 +91,7 @@ class Array : public sc_core::sc_module {
     void make_runs();
 
     Environment& environment_;
+    const Prefetch prefetch_;
     StableArray<Cell> cells_;
     std::vector<std::unique_ptr<CellTile>> tiles_;
     std::map<std::size_t, std::unique_ptr<CellModule>> modules_;  ///< by the cell's index

@@ -5,7 +5,7 @@
 #include <memory>
 #include <systemc>
 
-#include "cells/cell.hpp"
+#include "cells/hosts/prefetch.hpp"
 
 namespace raycell {
 
@@ -27,10 +27,11 @@ class CellModule : public sc_core::sc_module, public CellHost {
 
     /// All that run in a cycle are woken before the first of them runs: time to ask for their memory.
     void activate(Cell& cell) override {
-        cell.fetch();
-        cell.fetch_links();
+        Prefetch::cell(&cell);
+        Prefetch::links(cell);
         wake_.notify();
     }
+    void foresee(const Cell& cell) const override { Prefetch::links(cell); }
     Cell& cell() { return cell_; }
     const Cell& cell() const { return cell_; }
 

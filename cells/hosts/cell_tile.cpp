@@ -8,11 +8,11 @@ namespace {
 constexpr std::size_t cells_ahead = 16;
 constexpr std::size_t links_ahead = 12;
 constexpr std::size_t messages_ahead = 8;
-constexpr std::size_t ways_ahead = 4;
+constexpr std::size_t outputs_ahead = 4;
 
 }  // namespace
 
-void run_cells(const std::vector<Cell*>& cells, Environment& environment) {
+void run_cells(const std::vector<Cell*>& cells, Environment& environment, const Prefetch& prefetch) {
     Scheduler& scheduler = environment.scheduler;
     const Cycle now = scheduler.now();
     const std::size_t count = cells.size();
@@ -21,32 +21,32 @@ void run_cells(const std::vector<Cell*>& cells, Environment& environment) {
     const std::vector<Client*>& next_cycle = scheduler.foreseen(now + 1);
     for (std::size_t i = 0 - cells_ahead; i != count; ++i) {
         if (i + cells_ahead < count) {
-            cells[i + cells_ahead]->fetch();
+            Prefetch::cell(cells[i + cells_ahead]);
         } else if (i + cells_ahead - count < next_cycle.size()) {
-            Cell::fetch(next_cycle[i + cells_ahead - count]);
+            Prefetch::cell(next_cycle[i + cells_ahead - count]);
         }
         if (i + links_ahead < count) {
-            cells[i + links_ahead]->fetch_links();
+            Prefetch::links(*cells[i + links_ahead]);
         } else if (i + links_ahead - count < next_cycle.size()) {
-            next_cycle[i + links_ahead - count]->fetch_ahead();
+            next_cycle[i + links_ahead - count]->foreseen();
         }
-        if (i + messages_ahead < count) cells[i + messages_ahead]->fetch_messages();
-        if (i + ways_ahead < count) cells[i + ways_ahead]->fetch_ways();
+        if (i + messages_ahead < count) prefetch.messages(*cells[i + messages_ahead]);
+        if (i + outputs_ahead < count) prefetch.outputs(*cells[i + outputs_ahead]);
         if (i >= count) continue;
         const Cycle next = cells[i]->step(now);
         if (next != never) scheduler.wake(*cells[i], next);
     }
 }
 
-CellTile::CellTile(sc_core::sc_module_name name, Environment& environment)
-    : sc_module(name), environment_(environment) {
+CellTile::CellTile(sc_core::sc_module_name name, Environment& environment, const Prefetch& prefetch)
+    : sc_module(name), environment_(environment), prefetch_(prefetch) {
     SC_METHOD(run);
     sensitive << wake_;
     dont_initialize();
 }
 
 void CellTile::run() {
-    run_cells(active_, environment_);
+    run_cells(active_, environment_, prefetch_);
     active_.clear();
 }
 

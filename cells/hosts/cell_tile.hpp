@@ -4,30 +4,33 @@
 #include <systemc>
 #include <vector>
 
-#include "cells/cell.hpp"
+#include "cells/hosts/prefetch.hpp"
 
 namespace raycell {
 
 /// Runs the cells of a list, each once, in the scheduler's cycle, and wakes them for the next that they want.
 /// Asks for the memory of those farther down ahead.
-void run_cells(const std::vector<Cell*>& cells, Environment& environment);
+void run_cells(const std::vector<Cell*>& cells, Environment& environment, const Prefetch& prefetch);
 
 /// Runs those of its cells that the scheduler's time wheel has woken; the others cost nothing. Its cells call
 /// their links directly, there are no ports.
 class CellTile : public sc_core::sc_module, public CellHost {
   public:
     SC_HAS_PROCESS(CellTile);
-    CellTile(sc_core::sc_module_name name, Environment& environment);
+    /// `prefetch` must outlive it.
+    CellTile(sc_core::sc_module_name name, Environment& environment, const Prefetch& prefetch);
 
     void activate(Cell& cell) override {
         if (active_.empty()) wake_.notify();
         active_.push_back(&cell);
     }
+    void foresee(const Cell& cell) const override { Prefetch::links(cell); }
 
   private:
     void run();
 
     Environment& environment_;
+    const Prefetch& prefetch_;
     std::vector<Cell*> active_;  ///< to run in this cycle
     sc_core::sc_event wake_;
 };

@@ -24,17 +24,21 @@ class Pool {
     std::size_t in_use() const { return made_ - free_.size(); }
 
   private:
-    static constexpr std::size_t block = StableArray<T>::page / sizeof(T);  // objects
+    /// An object begins at a line of memory: what is asked for ahead is no more than its own.
+    struct alignas(64) Place {
+        T object;
+    };
+    static constexpr std::size_t block = StableArray<Place>::page / sizeof(Place);  // objects
     T* make() {
         if (made_ % block == 0) {
-            blocks_.push_back(std::make_unique<StableArray<T>>());
+            blocks_.push_back(std::make_unique<StableArray<Place>>());
             blocks_.back()->reserve(block);
         }
         ++made_;
-        return &blocks_.back()->emplace_back();
+        return &blocks_.back()->emplace_back().object;
     }
 
-    std::vector<std::unique_ptr<StableArray<T>>> blocks_;
+    std::vector<std::unique_ptr<StableArray<Place>>> blocks_;
     std::size_t made_ = 0;
     std::vector<T*> free_;
 };

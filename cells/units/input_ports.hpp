@@ -61,9 +61,7 @@ class InputPorts {
     Wait& answer_wait(std::size_t side) { return answer_waits_[side]; }
     const std::array<Wait, side_count>& answer_waits() const { return answer_waits_; }
 
-    // For asking for memory ahead.
-    void fetch_buffer(std::size_t input) const { link_of(input).fetch_buffer(inputs_[input].place); }
-    void fetch_answers(std::size_t side) const { links_[side]->fetch_buffer(answer_places_[side]); }
+    // Where a buffer stands: its side, its place in the link.
     std::size_t side_of(std::size_t input) const { return std::size_t(inputs_[input].side); }
     std::uint8_t place_of(std::size_t input) const { return inputs_[input].place; }
     std::uint8_t answer_place(std::size_t side) const { return answer_places_[side]; }

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "cells/clock/scheduler.hpp"
-#include "cells/memory/fetch_line.hpp"
 #include "cells/memory/pool.hpp"
 
 namespace raycell {
@@ -19,7 +18,7 @@ class TimeOut {
     static constexpr int least_log = 4;
     static constexpr int most_log = 20;
     /// Waits by their length: of 2^least_log cycles and more, and so on.
-    struct alignas(64) Counts {
+    struct Counts {
         std::array<std::uint32_t, most_log - least_log + 1> ended{};
     };
 
@@ -41,12 +40,9 @@ class TimeOut {
     }
     /// Since when the cell waits; `never` if it doesn't.
     Cycle since() const { return since_; }
-    /// Asks for the memory that the end of a wait will touch.
-    void fetch() const {
-        if (since_ != never) fetch_line(ended_);
-    }
 
   private:
+    friend class Prefetch;
     void count(Cycle length, Pool<Counts>& counts) {
         int log = least_log - 1;
         while (log < most_log && length >> (log + 1)) ++log;

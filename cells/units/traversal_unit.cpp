@@ -4,7 +4,7 @@ namespace raycell {
 
 std::uint32_t TraversalUnit::test(RayPacket& packet, const Setting& setting, const CostTable& costs) {
     const Context& context = setting.context;
-    packet.visit = visit_cell(setting.store, packet.ray, context, setting.runs, setting.run_count);
+    packet.visit = visit_cell(setting.store, packet.ray, context, setting.runs);
     packet.need =
         need_of(packet.ray, packet.visit, setting.store, setting.x, setting.y, setting.classes, context);
     return visit_cycles(packet.visit, context.settings, costs);

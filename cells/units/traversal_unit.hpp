@@ -10,11 +10,10 @@ namespace raycell {
 
 class TraversalUnit {
   public:
-    /// What all tests of a cell have in common. `runs`: see visit_cell().
+    /// What all tests of a cell have in common.
     struct Setting {
         const CellStore& store;
-        const DepthRun* runs;
-        std::uint32_t run_count;
+        const DepthRuns& runs;
         const Context& context;
         const BufferClasses& classes;
         int x;

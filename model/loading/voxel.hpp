@@ -38,6 +38,11 @@ struct DepthRun {
     double near = 0;
     double far = 0;
 };
+/// Those of all voxels of a cell, as its comparators hold them; none: they are read from the voxels.
+struct DepthRuns {
+    const DepthRun* first = nullptr;
+    std::uint32_t count = 0;
+};
 
 /// What one cell holds after loading.
 struct CellStore {

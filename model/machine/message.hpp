@@ -10,7 +10,7 @@ namespace raycell {
 
 /// The way back: an intensity, a verdict on a source, or the notice that a ray was destroyed and must be sent
 /// again.
-struct alignas(64) Answer {
+struct Answer {
     enum class Kind : std::uint8_t { intensity, lit, blocked, postponed };
     dvec3 colour{0, 0, 0};
     std::uint64_t id = 0;      ///< of the ray that it answers

@@ -142,18 +142,18 @@ bool precedes(double t, std::uint32_t polygon, double kept_t, std::uint32_t kept
 
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
                                        double level, const Arithmetic& arithmetic, Comparisons* comparisons,
-                                       const DepthRun* runs, std::uint32_t run_count) {
+                                       const DepthRuns& runs) {
     std::optional<CellHit> best;
-    if (!runs) run_count = std::uint32_t(store.voxels.size());
+    const std::uint32_t run_count = runs.first ? runs.count : std::uint32_t(store.voxels.size());
     if (comparisons) comparisons->runs += run_count;
     if (run_count == 0) return best;
     const double z1 = depth_at(ray, t_end, arithmetic);
     const double z_low = std::min(ray.position.z, z1) - arithmetic.hair();
     const double z_high = std::max(ray.position.z, z1) + arithmetic.hair();
     for (std::uint32_t i = 0; i < run_count; ++i) {
-        if (runs && (runs[i].near > z_high || runs[i].far < z_low)) continue;
+        if (runs.first && (runs.first[i].near > z_high || runs.first[i].far < z_low)) continue;
         const Voxel& voxel = store.voxels[i];
-        if (!runs && (voxel.near > z_high || voxel.far < z_low)) continue;
+        if (!runs.first && (voxel.near > z_high || voxel.far < z_low)) continue;
         if (voxel.polygon == ray.leaves) continue;
         if (comparisons) {
             ++comparisons->tests;

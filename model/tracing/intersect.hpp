@@ -27,12 +27,10 @@ struct Comparisons {
 };
 
 /// The nearest hit in a cell; within Arithmetic::tie() the lowest polygon id. For shadow rays any hit will
-/// do, but the nearest is found all the same: the cell has one comparison unit for both. `runs`: if not null,
-/// the depths of all `run_count` voxels of the store, which then is only looked at where the ray's own run
-/// meets one of theirs.
+/// do, but the nearest is found all the same: the cell has one comparison unit for both. The store is only
+/// looked at where the ray's own run meets one of `runs`.
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
                                        double level, const Arithmetic& arithmetic,
-                                       Comparisons* comparisons = nullptr, const DepthRun* runs = nullptr,
-                                       std::uint32_t run_count = 0);
+                                       Comparisons* comparisons = nullptr, const DepthRuns& runs = {});
 
 }  // namespace raycell

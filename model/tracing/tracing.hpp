@@ -45,9 +45,7 @@ struct Visit {
     Comparisons comparisons;
     Event event = Event::forward;
 };
-/// `runs`: see nearest_in_cell().
-Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
-                 const DepthRun* runs = nullptr, std::uint32_t run_count = 0);
+Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context, const DepthRuns& runs = {});
 
 /// Cycles that the traversal unit needs for a visit.
 std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs);

@@ -48,9 +48,9 @@ Measured measure(const Traffic& traffic, const Granularity& granularity, const R
 class BareHost : public CellHost {
   public:
     void activate(Cell& cell) override { active_.push_back(&cell); }
-    void run(Environment& environment) {
+    void run(Environment& environment, const Prefetch& prefetch) {
         while (environment.scheduler.run_next()) {
-            run_cells(active_, environment);
+            run_cells(active_, environment, prefetch);
             active_.clear();
         }
     }
@@ -69,7 +69,7 @@ Measured run_bare_cells(const Traffic& traffic) {
     return measure(traffic, {}, [](Bench& bench) {
         BareHost host;
         for (Cell& cell : bench.array->cells()) cell.set_host(host);
-        host.run(*bench.environment);
+        host.run(*bench.environment, bench.array->prefetch());
     });
 }
 

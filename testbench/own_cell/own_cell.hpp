@@ -171,7 +171,7 @@ class OwnCell : public CellSocket {
             RayPacket* packet = ray_at(places_[at]);
             if (!packet || packet->stage != RayPacket::Stage::untested) continue;
             const std::uint32_t cycles = TraversalUnit::test(
-                *packet, {store_, nullptr, 0, env_.context, env_.classes, x_, y_}, env_.costs());
+                *packet, {store_, DepthRuns(), env_.context, env_.classes, x_, y_}, env_.costs());
             env_.counters.traversal_cycles += cycles;
             traversal_.start(*packet, std::uint32_t(at), now_ + cycles);
             return wakeup_.at(traversal_.done());

@@ -179,7 +179,7 @@ TEST(Ladder, AVisitIsTheSameByTheDepthsThatStandApartFromTheirVoxels) {
                 for (const Voxel& voxel : store.voxels) runs.push_back({voxel.near, voxel.far});
                 const Visit a = visit_cell(store, ray, context);
                 const Visit b =
-                    visit_cell(store, ray, context, runs.data() + 1, std::uint32_t(store.voxels.size()));
+                    visit_cell(store, ray, context, {runs.data() + 1, std::uint32_t(store.voxels.size())});
                 ASSERT_EQ(a.event, b.event);
                 ASSERT_EQ(std::tie(a.hit.t, a.hit.voxel, a.crossing.t, a.crossing.side),
                           std::tie(b.hit.t, b.hit.voxel, b.crossing.t, b.crossing.side));
