@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "cells/clock/scheduler.hpp"
+#include "model/numbers/bits.hpp"
+#include "model/numbers/field_widths.hpp"
 
 namespace raycell {
 
@@ -16,8 +18,9 @@ namespace raycell {
 /// are some, so the result does not depend on how often the cell runs.
 class AgingArbiter {
   public:
-    static constexpr Cycle patience = 65536;           ///< starvation bound, cycles
-    static constexpr Cycle epoch = patience / 8;       ///< ages are counted in these
+    static constexpr Cycle patience = 65536;                      ///< starvation bound, cycles
+    static constexpr Cycle epoch = patience / 8;                  ///< ages are counted in these
+    static_assert(bits_for(patience + epoch + 1) == field::age);  // counted as a register
     static constexpr std::uint32_t others = 1U << 11;  ///< a bit that stands for what was not looked at
 
     enum class Kind : std::uint8_t { answer, reply, ray };

@@ -327,7 +327,7 @@ VoxelBits voxel_bits(const PictureSettings& settings, const Formats& formats, st
     // Two slopes and an offset; which axis they are for, and its sign.
     if (settings.hit >= HitTest::plane) bits.base += 3 * word + 3;
     if (settings.hit == HitTest::mask) bits.base += 64 + 4 * 5;  // coverage and its window
-    if (settings.hit == HitTest::edge) bits.base += 8;           // how many edges follow
+    if (settings.hit == HitTest::edge) bits.base += field::edge_count;           // how many edges follow
     if (settings.normals == Normals::linear) bits.base += 6 * word;
     if (settings.shadows != Shadows::per_hit) {
         bits.base += int(sources) * (settings.shadows == Shadows::memo ? 2 : 1);

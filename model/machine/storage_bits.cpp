@@ -6,53 +6,141 @@
 #include "model/numbers/field_widths.hpp"
 
 namespace raycell {
+namespace {
+
+constexpr Side all_sides[] = {Side::east, Side::south, Side::west, Side::north};
+
+bool is_horizontal(Side side) { return side == Side::east || side == Side::west; }
+
+/// Calls see(holds_rays, holds_answers) for each buffer of a cell's four inputs.
+template <typename See>
+void for_each_buffer(const BufferClasses& classes, const See& see) {
+    for (const Side side : all_sides) {
+        for (int index = 0; index < classes.count; ++index) {
+            if (!classes.used(index, is_horizontal(side), side)) continue;
+            const bool answers = index == classes.answer;
+            see(!answers || classes.count == 1, answers);
+        }
+    }
+}
+
+/// A ray's stage 2 (untested, in test, decided); what it needs 3, over which side or with which answer 2,
+/// leaves the array 1, is lost 1; voxel and distance.
+int decision_bits(const Formats& formats) {
+    return 2 + 3 + 2 + 1 + 1 + field::voxel_index + formats.distance.bits();
+}
+
+/// Shortest back-off to the longest, which is doubled six times and at most once more by the jitter.
+int retry_bits(const MachineSettings& machine) {
+    if (machine.recovery != Recovery::postpone) return 0;
+    constexpr int attempts = 3;
+    return attempts + bits_for((std::int64_t(machine.costs.backoff) << 7) + 1);
+}
+
+/// Home, slot and child: where a ray's answer goes.
+int address_bits(const MessageBits& messages) { return messages.verdict - field::type; }
+
+/// The longest ray that a cell sends; `children`: a slot's, else the cell's own.
+int sent_ray_bits(const PictureSettings& picture, const MessageBits& messages, std::size_t sources,
+                  bool children) {
+    const bool shadow_rays =
+        children ? picture.shadows != Shadows::precast : picture.shadows == Shadows::precast;
+    return std::max(messages.ray, sources > 0 && shadow_rays ? messages.shadow_ray : 0);
+}
+
+/// Counts the cycles that a message of so many bits takes on a link.
+int wire_bits(const MachineSettings& machine, int bits) {
+    return bits_for(link_cycles(bits, machine.link_bits) + 1);
+}
+
+}  // namespace
+
 SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machine, const Formats& formats,
                    std::size_t sources) {
     constexpr int children = 2;
     const int word = formats.word_bits;
     const int direction = 3 * word;
     const MessageBits messages = message_bits(picture, machine, formats);
-    const int address = messages.verdict - field::type;
+    const int address = address_bits(messages);
     SlotBits bits;
     bits.control = 3 + bits_for(machine.ray_store) + field::voxel_index;  // six states; the oldest goes first
     bits.ray = address + 2 + field::generation + word + direction;  // kind: primary, reflected, refracted
     bits.hit = 2 * word + formats.depth_word_bits() + direction + 1;
     bits.children = children * (direction + 2 + 3 * word);
-    if (machine.recovery == Recovery::postpone) {
-        // The back-off doubles up to six times, and the jitter at most doubles it once more.
-        constexpr int attempts = 3;
-        bits.children += children * (attempts + bits_for((std::int64_t(machine.costs.backoff) << 7) + 1));
-    }
+    bits.children += children * retry_bits(machine);
     const int each = picture.shadows == Shadows::per_hit ? 3 : picture.shadows == Shadows::memo ? 2 : 1;
     bits.sources = each * int(sources);
-    bits.out =
-        std::max(messages.ray, sources > 0 && picture.shadows != Shadows::precast ? messages.shadow_ray : 0);
+    bits.out = sent_ray_bits(picture, messages, sources, true) + decision_bits(formats) + field::age;
+    return bits;
+}
+
+namespace {
+
+/// The nearest hit so far, where the cell ends and the ray's own depths there, counters over voxels and
+/// edges, the ray's place and where the next round begins, a point, a sum.
+int traversal_bits(const MachineSettings& machine, const Formats& formats, int ray_inputs) {
+    const int distance = formats.distance.bits();
+    const int nearest = 1 + distance + field::voxel_index;
+    const int crossing = distance + 2;
+    const int run = 2 * formats.depth_word_bits();
+    const int counters = field::voxel_index + field::edge_count;
+    const int places = 2 * bits_for(ray_inputs + 1 + machine.ray_store);
+    const int point = 2 * formats.word_bits + formats.depth_word_bits();
+    return nearest + crossing + run + counters + places + point + formats.accumulator.bits();
+}
+
+/// The job 3 and its slot, counter over sources; three vectors (to the source, half way, mirrored), the
+/// distance to the source, the intensity so far, a sum. For hits without a slot: the ray and the hit, and the
+/// answer on its way out.
+int shading_bits(const SlotBits& slot, const MachineSettings& machine, const MessageBits& messages,
+                 const Formats& formats) {
+    const int vector = 3 * formats.word_bits;
+    const int job = 3 + bits_for(machine.ray_store) + field::child;
+    const int work = 3 * vector + formats.reach.bits() + vector + formats.accumulator.bits();
+    return job + work + slot.ray + slot.hit + field::voxel_index + messages.intensity;
+}
+
+}  // namespace
+
+RegisterBits register_bits(const PictureSettings& picture, const MachineSettings& machine,
+                           const Formats& formats, std::size_t sources) {
+    const MessageBits messages = message_bits(picture, machine, formats);
+    const BufferClasses classes = buffer_classes(machine.networks);
+    const int ray = std::max(messages.ray, messages.shadow_ray);
+    const int age = field::age;
+    int ray_inputs = 0;
+    RegisterBits bits;
+    for_each_buffer(classes, [&](bool holds_rays, bool) {
+        ray_inputs += holds_rays;
+        bits.ages += age;
+        bits.credits += bits_for(machine.buffer_depth + 1);  // as many outputs as inputs
+    });
+    const bool precast = picture.shadows == Shadows::precast;
+    bits.own_ray = sent_ray_bits(picture, messages, sources, false) + 2 + retry_bits(machine) +
+                   (precast ? field::voxel_index + bits_for(std::int64_t(sources)) : 0);
+    bits.decisions = (ray_inputs + 1) * decision_bits(formats);
+    bits.ages += 2 * age;
+    bits.credits += 2 * side_count * wire_bits(machine, ray);  // those that come in and those that leave
+    bits.outputs = side_count * std::max(ray, messages.intensity);
+    bits.traversal = traversal_bits(machine, formats, ray_inputs);
+    bits.shading = shading_bits(slot_bits(picture, machine, formats, sources), machine, messages, formats);
+    bits.loading = std::max(messages.span - ray, 0);
+    bits.latches = messages.viewer + 3 * formats.word_bits + int(sources) * messages.source;
     return bits;
 }
 
 StorageBits storage_bits(const PictureSettings& picture, const MachineSettings& machine,
                          const Formats& formats, std::size_t sources) {
     const MessageBits messages = message_bits(picture, machine, formats);
-    const BufferClasses classes = buffer_classes(machine.networks);
     const std::int64_t ray = std::max(messages.ray, messages.shadow_ray);
     const std::int64_t answer = messages.intensity;
     StorageBits bits;
-    for (const Side side : {Side::east, Side::south, Side::west, Side::north}) {
-        const bool horizontal = side == Side::east || side == Side::west;
-        for (int index = 0; index < classes.count; ++index) {
-            if (!classes.used(index, horizontal, side)) continue;
-            if (classes.count == 1) {
-                bits.ray_buffers += std::max(ray, answer);
-            } else if (index == classes.answer) {
-                bits.answer_buffers += answer;
-            } else {
-                bits.ray_buffers += ray;
-            }
-        }
-    }
-    bits.ray_buffers *= machine.buffer_depth;
-    bits.answer_buffers *= machine.buffer_depth;
+    for_each_buffer(buffer_classes(machine.networks), [&](bool rays, bool answers) {
+        std::int64_t& kind = rays ? bits.ray_buffers : bits.answer_buffers;
+        kind += std::max(rays ? ray : 0, answers ? answer : 0) * machine.buffer_depth;
+    });
     bits.ray_store = std::int64_t(slot_bits(picture, machine, formats, sources).total()) * machine.ray_store;
+    bits.registers = register_bits(picture, machine, formats, sources).total();
     return bits;
 }
 

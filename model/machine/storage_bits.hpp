@@ -1,5 +1,5 @@
-// What a cell must store to communicate, bit by bit: its buffers and its ray store. docs/reference/cell.md has the
-// table.
+// What a cell must store, bit by bit, beside its voxels: buffers, ray store, registers.
+// docs/reference/cell.md has the tables.
 #pragma once
 
 #include "model/machine/message.hpp"
@@ -13,7 +13,7 @@ struct SlotBits {
     int hit = 0;       ///< point, normal, side
     int children = 0;  ///< their directions; sent, awaited, intensity; with recovery attempts and back-off
     int sources = 0;   ///< a bit each for to ask, awaited, lit, as the shadow mode needs them
-    int out = 0;       ///< register of the child on its way out
+    int out = 0;       ///< register of the child on its way out: a ray, what was decided about it, its age
     int total() const { return control + ray + hit + children + sources + out; }
 };
 
@@ -21,13 +21,32 @@ struct SlotBits {
 SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machine, const Formats& formats,
                    std::size_t sources);
 
+/// Registers beside buffers and slots, bits.
+struct RegisterBits {
+    int own_ray = 0;    ///< the injector's: a ray; whether it is to be sent, awaited; its back-off
+    int decisions = 0;  ///< of each ray input and the own ray, once it is tested
+    int ages = 0;       ///< of each input, the own ray and the shading unit's answer: oldest first
+    int credits = 0;    ///< places left behind each output, by class; cycles until wires are free
+    int outputs = 0;    ///< the message that leaves over each side, while its place is taken by the next
+    int traversal = 0;  ///< working registers of the traversal unit
+    int shading = 0;    ///< of the shading unit, with the hit and the answer that have no slot
+    int loading = 0;    ///< of the loading unit: what of a span its buffer does not hold
+    int latches = 0;    ///< viewer, background and sources, from the load messages
+    int total() const {
+        return own_ray + decisions + ages + credits + outputs + traversal + shading + loading + latches;
+    }
+};
+RegisterBits register_bits(const PictureSettings& picture, const MachineSettings& machine,
+                           const Formats& formats, std::size_t sources);
+
 /// What a cell with four neighbours stores, bits.
 struct StorageBits {
     std::int64_t ray_buffers = 0;     ///< of its four input links; a buffer's words hold the widest message
     std::int64_t answer_buffers = 0;  ///< 0 with `shared`: answers stand among the rays
     std::int64_t ray_store = 0;       ///< M slots
+    std::int64_t registers = 0;
     std::int64_t buffers() const { return ray_buffers + answer_buffers; }
-    std::int64_t total() const { return buffers() + ray_store; }
+    std::int64_t total() const { return buffers() + ray_store + registers; }
 };
 StorageBits storage_bits(const PictureSettings& picture, const MachineSettings& machine,
                          const Formats& formats, std::size_t sources);

@@ -96,6 +96,13 @@ const char* name_of(LoadedBy loading) {
     return "";
 }
 
+Json registers_json(const RegisterBits& bits) {
+    return {{"own_ray", bits.own_ray}, {"decisions", bits.decisions}, {"ages", bits.ages},
+            {"credits", bits.credits}, {"outputs", bits.outputs},     {"traversal", bits.traversal},
+            {"shading", bits.shading}, {"loading", bits.loading},     {"latches", bits.latches},
+            {"total", bits.total()}};
+}
+
 }  // namespace
 
 std::string to_text(const Json& json) {
@@ -174,11 +181,14 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                             {"verdict", messages.verdict},
                             {"span", messages.span},
                             {"trapeze", messages.trapeze}};
-    const StorageBits stored_bits = storage_bits(picture, machine, formats, scene.sources.size());
+    const std::size_t sources = scene.sources.size();
+    const StorageBits stored_bits = storage_bits(picture, machine, formats, sources);
     json["storage_bits"] = {{"ray_buffers", stored_bits.ray_buffers},
                             {"answer_buffers", stored_bits.answer_buffers},
-                            {"slot", slot_bits(picture, machine, formats, scene.sources.size()).total()},
-                            {"ray_store", stored_bits.ray_store}};
+                            {"slot", slot_bits(picture, machine, formats, sources).total()},
+                            {"ray_store", stored_bits.ray_store},
+                            {"registers", registers_json(register_bits(picture, machine, formats, sources))},
+                            {"total", stored_bits.total()}};
     json["formats"] = Json::object();
     for (const auto& [name, format] : formats.names()) json["formats"][name] = format;
     json["ray_store"] = {

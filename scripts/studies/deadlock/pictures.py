@@ -122,7 +122,7 @@ def draw_bits(results, path):
                     draw_bits_line(axis, results.line(load, networks, depth, mode), NETWORK_COLOURS[networks],
                                    MARKERS[place % 4], style)
         axis.set_title(f"{load}, {cells}x{cells} cells")
-        axis.set_xlabel("bits of buffers and ray store, a cell")
+        axis.set_xlabel("bits of buffers, ray store and registers, a cell")
         logarithmic(axis)
         count_axis(axis, 7)
     axes[0][0].set_ylabel("cycles from the loaded array to the picture (median)")

@@ -24,7 +24,7 @@ def row_of(configuration, record):
         **{f"buffer_mean_{name}": round(buffers["mean"][name], 6) if name in buffers["mean"] else ""
            for name in CLASSES},
         "buffer_bits": storage["ray_buffers"] + storage["answer_buffers"], "slot_bits": storage["slot"],
-        "ray_store_bits": storage["ray_store"], "ray_bits": report["message_bits"]["ray"],
+        "ray_store_bits": storage["ray_store"], "register_bits": storage["registers"]["total"], "ray_bits": report["message_bits"]["ray"],
         "knot_cells": knot.get("cells", ""), "knot_formed": knot.get("formed", ""),
         "image_hash": report["hash"]["image"], "schedule_hash": report["hash"]["schedule"],
     }
@@ -51,7 +51,7 @@ class Row(SweepRow):
 
     @property
     def cell_bits(self):
-        return self.buffer_bits + self.ray_store_bits
+        return self.buffer_bits + self.ray_store_bits + self.register_bits
 
     def buffer_use(self, kind):
         """(peak, mean) over the classes of rays, or of answers; `shared` has one for both."""

@@ -55,7 +55,7 @@ class Sweep(ReportRunner):
         return (("knot" not in record["report"]["deadlock"] or record["report"]["knots_accepted"])
                 and record["scene_hash"] == self.scene_hashes.get(configuration.load)
                 and is_number(record["report"]["cycles"]["trace"])
-                and is_number(record["report"]["storage_bits"]["ray_store"]))
+                and is_number(record["report"]["storage_bits"]["total"]))
 
     def cost(self, configuration):
         return cost(configuration)

@@ -105,7 +105,7 @@ def cost_of(line):
     m, group = safe
     first = group.rows[0]
     return [m, count(first.buffer_bits), f"{count(first.ray_store_bits)} (M x {count(first.slot_bits)})",
-            count(first.cell_bits), count(group.median(lambda row: row.cycles)),
+            count(first.register_bits), count(first.cell_bits), count(group.median(lambda row: row.cycles)),
             count(group.median(lambda row: row.destroyed))]
 
 
@@ -119,7 +119,7 @@ def cost_table(results):
                     if cost:
                         lines.append([load, f"`{networks}`", depth, name_of(mode), *cost])
     return table(["load", "networks", "buffers of", "recovery, slots", "smallest safe M", "buffers, bits",
-                  "ray store, bits", "both, bits a cell", "cycles (median)", "destroyed (median)"], lines)
+                  "ray store, bits", "registers, bits", "together, bits a cell", "cycles (median)", "destroyed (median)"], lines)
 
 
 def slots_table(results):

@@ -309,14 +309,50 @@ TEST(StorageBits, OfBuffersFollowTheNetworks) {
 }
 
 TEST(StorageBits, OfASlotAreThoseOfTheTable) {
-    const Sized sized;  // docs/reference/cell.md: 128x128 cells, M = 8, 20-bit words, a cube up to 256 cells deep
+    const Sized
+        sized;  // docs/reference/cell.md: 128x128 cells, M = 8, 20-bit words, a cube up to 256 cells deep
     const SlotBits bits = slot_bits(sized.picture, sized.machine, sized.formats, 1);
     EXPECT_EQ(bits.control, 3 + 3 + 10);
     EXPECT_EQ(bits.ray, 24 + 2 + 6 + 20 + 60);
     EXPECT_EQ(bits.hit, 68 + 60 + 1);
     EXPECT_EQ(bits.children, 2 * (60 + 2 + 60 + 3 + 14));
     EXPECT_EQ(bits.sources, 3);
-    EXPECT_EQ(bits.out, 256);
+    EXPECT_EQ(bits.out, 256 + 48 + 17);
+}
+
+TEST(StorageBits, OfRegistersAreThoseOfTheTable) {
+    Sized sized;  // as above, half networks, buffers of 1, links of 20 bits
+    const RegisterBits bits = register_bits(sized.picture, sized.machine, sized.formats, 1);
+    EXPECT_EQ(bits.own_ray, 256 + 2 + 17);
+    EXPECT_EQ(bits.decisions, 7 * 48);
+    EXPECT_EQ(bits.ages, (6 + 4 + 2) * 17);
+    EXPECT_EQ(bits.credits, 10 * 1 + 8 * 4);
+    EXPECT_EQ(bits.outputs, 4 * 256);
+    EXPECT_EQ(bits.traversal, 40 + 31 + 56 + 18 + 8 + 68 + 40);
+    EXPECT_EQ(bits.shading, 12 + 4 * 60 + 20 + 40 + 112 + 129 + 10 + 87);
+    EXPECT_EQ(bits.loading, 1123 - 256);
+    EXPECT_EQ(bits.latches, 111 + 60 + 162);
+}
+
+TEST(StorageBits, OfRegistersFollowTheMachine) {
+    Sized sized;
+    const auto bits = [&] { return register_bits(sized.picture, sized.machine, sized.formats, 1); };
+    const RegisterBits plain = bits();
+    sized.machine.buffer_depth = 4;  // a credit counter per output and class: 1 to 3 bits
+    EXPECT_EQ(bits().credits, plain.credits + 10 * 2);
+    sized.machine = {};
+    sized.machine.networks = Networks::quadrant;  // eight ray inputs, not six
+    EXPECT_EQ(bits().decisions - plain.decisions, 2 * 48);
+    EXPECT_EQ(bits().ages - plain.ages, 2 * 17);
+    sized.machine = {};
+    sized.machine.recovery = Recovery::none;  // nothing is sent again
+    EXPECT_EQ(bits().own_ray, plain.own_ray - 17);
+    sized.machine = {};
+    sized.machine.link_bits = 256;  // a message takes one cycle: one bit says that the wires are busy
+    EXPECT_EQ(bits().credits, plain.credits - 8 * 3);
+    sized.machine = {};
+    sized.picture.shadows = Shadows::precast;  // whose source and voxel are counted through
+    EXPECT_GT(bits().own_ray, plain.own_ray);
 }
 
 TEST(StorageBits, OfTheRayStoreGrowWithItsSlotsAndShrinkWithoutRecovery) {

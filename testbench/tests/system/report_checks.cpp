@@ -15,6 +15,17 @@ const char* const keys[] = {
     "/storage_bits/answer_buffers",
     "/storage_bits/slot",
     "/storage_bits/ray_store",
+    "/storage_bits/registers/own_ray",
+    "/storage_bits/registers/decisions",
+    "/storage_bits/registers/ages",
+    "/storage_bits/registers/credits",
+    "/storage_bits/registers/outputs",
+    "/storage_bits/registers/traversal",
+    "/storage_bits/registers/shading",
+    "/storage_bits/registers/loading",
+    "/storage_bits/registers/latches",
+    "/storage_bits/registers/total",
+    "/storage_bits/total",
     "/cycles/load",
     "/cycles/precast",
     "/cycles/trace",
@@ -129,6 +140,18 @@ void expect_share(const Json& value) {
     EXPECT_LE(value.get<double>(), 1) << value;
 }
 
+/// A cell's bits are those of its parts.
+void expect_sums(const Json& bits) {
+    std::int64_t registers = 0;
+    for (const auto& [name, value] : bits.at("registers").items()) {
+        if (name != "total") registers += value.get<std::int64_t>();
+    }
+    EXPECT_EQ(registers, count(bits.at("registers"), "total"));
+    EXPECT_EQ(
+        registers + count(bits, "ray_buffers") + count(bits, "answer_buffers") + count(bits, "ray_store"),
+        count(bits, "total"));
+}
+
 void expect_bounds(const Json& report) {
     const Json& cycles = report.at("cycles");
     EXPECT_EQ(count(cycles, "total"),
@@ -141,6 +164,7 @@ void expect_bounds(const Json& report) {
     const Json& store = report.at("ray_store");
     EXPECT_EQ(count(report.at("storage_bits"), "ray_store"),
               count(report.at("storage_bits"), "slot") * count(store, "capacity"));
+    expect_sums(report.at("storage_bits"));
     EXPECT_LE(count(store, "peak"), count(store, "capacity"));
     EXPECT_LE(store.at("mean").get<double>(), store.at("capacity").get<double>());
     for (const auto& peak : report.at("buffers").at("peak")) {
