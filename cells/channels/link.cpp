@@ -16,9 +16,18 @@ Link::Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used)
     if (depth < 1 || depth > most_depth || classes > most_classes)
         throw std::invalid_argument("a link of " + std::to_string(depth) +
                                     " messages a buffer; expected 1 to " + std::to_string(most_depth));
+    make_buffers(used);
+}
+
+Link::Link(Scheduler& scheduler, int classes, LinkOut& beyond) : Link(scheduler, classes, 1) {
+    depth_ = 0;
+    extras().beyond = &beyond;
+}
+
+void Link::make_buffers(std::uint32_t used) {
     places_.fill(no_buffer);
     std::uint8_t buffers = 0;
-    for (int index = 0; index < classes; ++index) {
+    for (int index = 0; index < classes_; ++index) {
         if (used >> index & 1) places_[std::size_t(index)] = buffers++;
     }
     if (buffers > own_buffers) {
@@ -56,6 +65,28 @@ void Link::set_observer(LinkObserver* observer) { extras().observer = observer; 
 
 void Link::set_name(std::string name) { extras().name = std::move(name); }
 
+const sc_core::sc_event& Link::default_event() const {
+    // Nothing that a run tells changes by it.
+    auto& bell = const_cast<Link*>(this)->extras().bell;
+    if (!bell) bell = std::make_unique<Extras::Bell>();
+    return bell->event;
+}
+
+void Link::ring(Cycle cycle) {
+    if (extras_->bell) scheduler_.wake(*extras_->bell, cycle);
+}
+
+void Link::put(int index, const Message& message, Cycle arrived) {
+    Buffer& b = buffer(index);
+    if (b.count == b.capacity) b.grow(depth_);
+    b.at(b.count) = {message, arrived};
+    ++b.count;
+    ++b.sent;
+    b.occupied -= scheduler_.now();
+    b.peak = std::max(b.peak, b.count);
+    if (sink_) sink_->pending_ |= b.pending_bits;
+}
+
 std::uint32_t Link::stalled() {
     if (!(extras_->stall > 0)) return 0;
     return stall_cycles(extras_->stall, extras_->stall_seed, extras_->stall_who, extras_->sends++);
@@ -64,6 +95,7 @@ std::uint32_t Link::stalled() {
 void Link::tell_sent(int index, const Message& message, int cycles) {
     if (extras_->observer) extras_->observer->sent(*this, index, message, cycles, scheduler_.now());
     if (extras_->arrivals) extras_->arrivals->arrives(extras_->port, index, wires_free_);
+    ring(wires_free_);
 }
 
 void Link::tell_popped(std::uint8_t place) {
@@ -73,6 +105,11 @@ void Link::tell_popped(std::uint8_t place) {
 }
 
 Link::Room Link::room(int index) const {
+    if (depth_ == 0) {
+        Cycle retry = never;
+        if (extras_->beyond->can_send(index, retry)) return Room::free;
+        return retry == never ? Room::full : Room::wires_busy;
+    }
     const Buffer& b = buffer(index);
     const Cycle now = scheduler_.now();
     if (b.count + b.still_seen(now) >= depth_) return Room::full;

@@ -14,19 +14,22 @@
 
 namespace raycell {
 
-/// What the sending side sees, for the ports of modules.
+/// What the sending side sees, for the ports of modules. Any channel may implement it; it keeps time by the
+/// Scheduler, and default_event(), for modules that are sensitive to their ports, is notified when the
+/// scheduler wakes it in the cycle after room was made for a sender that was refused.
 class LinkOut : virtual public sc_core::sc_interface {
   public:
     /// Whether a message of this class can start now: wires idle and room in its buffer, as they stood when
     /// the cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is
-    /// woken in the cycle after room was made.
+    /// told in the cycle after room was made.
     virtual bool can_send(int index, Cycle& retry) = 0;
     /// Starts a message; it is visible at the far end after its link cycles. The receiver is woken `later`
     /// cycles after that: for messages which it does nothing with before.
     virtual void send(int index, const Message& message, int cycles, int later = 0) = 0;
 };
 
-/// What the receiving side sees, for the ports of modules.
+/// What the receiving side sees, likewise: default_event() is notified in the cycle in which a message can be
+/// seen.
 class LinkIn : virtual public sc_core::sc_interface {
   public:
     /// The oldest message of a class if it has arrived, else an empty one.
@@ -56,6 +59,11 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
 
     /// `used`: a bit for each of the classes that the link carries.
     Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used = all_classes);
+    /// Has no buffers and no wires: whatever is sent goes to `beyond`, and that says whether it can.
+    Link(Scheduler& scheduler, int classes, LinkOut& beyond);
+
+    /// Notified for the sender and for the receiver alike; a link has one from the first call on.
+    const sc_core::sc_event& default_event() const override;
 
     void connect_source(Client& source) { source_ = &source; }
     void connect_sink(Client& sink) { sink_ = &sink; }
@@ -90,6 +98,8 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         return buffer && buffer->count > 0 ? buffer->at(0).visible : never;
     }
     void pop(int index) override;
+    /// Puts a message into its buffer that has come some other way, in cycle `arrived`; it has room.
+    void put(int index, const Message& message, Cycle arrived);
 
     /// For a sink that knows where a class's buffer stands, and need not touch the link's first line
     /// for it. Only for classes that the link carries.
@@ -197,6 +207,12 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         std::uint64_t stall_who = 0;
         std::uint64_t sends = 0;
         std::string name;
+        LinkOut* beyond = nullptr;
+        struct Bell : Client {
+            sc_core::sc_event event;
+            void activate() override { event.notify(); }
+        };
+        std::unique_ptr<Bell> bell;
         std::unique_ptr<Buffer[]> more_buffers;  ///< beyond the link's own
     };
 
@@ -215,6 +231,8 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     std::uint32_t stalled();
     void tell_sent(int index, const Message& message, int cycles);
     void tell_popped(std::uint8_t place);
+    void make_buffers(std::uint32_t used);
+    void ring(Cycle cycle);
     void wake_source(Cycle now);
 
     Scheduler& scheduler_;
@@ -237,6 +255,7 @@ inline bool Link::can_send(int index, Cycle& retry) {
     const Cycle now = scheduler_.now();
     const std::uint32_t still_seen = b.still_seen(now);
     if (b.count + still_seen >= depth_) {
+        if (depth_ == 0) return extras_->beyond->can_send(index, retry);
         if (still_seen > 0) {
             retry = std::min(retry, now + 1);
         } else {
@@ -254,8 +273,11 @@ inline bool Link::can_send(int index, Cycle& retry) {
 inline void Link::send(int index, const Message& message, int cycles, int later) {
     Buffer& b = buffer(index);
     const Cycle now = scheduler_.now();
+    if (extras_) {
+        if (extras_->beyond) return extras_->beyond->send(index, message, cycles, later);
+        cycles += int(stalled());
+    }
     if (b.count == b.capacity) b.grow(depth_);
-    if (extras_) cycles += int(stalled());
     wires_free_ = now + Cycle(cycles);
     b.at(b.count) = {message, wires_free_};
     ++b.count;
@@ -290,6 +312,7 @@ inline std::uint32_t Link::pop_at(std::uint8_t place, Cycle now) {
 }
 
 inline void Link::wake_source(Cycle now) {
+    if (extras_) ring(now + 1);
     if (!source_) return;
     source_->room_made_ |= room_bits_;
     scheduler_.wake(*source_, now + 1);

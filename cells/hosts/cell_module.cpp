@@ -1,29 +1,8 @@
 #include "cells/hosts/cell_module.hpp"
 
 namespace raycell {
-namespace {
-
-/// The link that a port is bound to, null if there is none.
-template <typename Port>
-Link* link_of(Port& port) {
-    if (port.size() == 0) return nullptr;
-    Link* link = dynamic_cast<Link*>(port[0]);
-    if (!link) {
-        SC_REPORT_ERROR("raycell",
-                        (std::string(port.name()) + " is bound to a channel that is no Link").c_str());
-    }
-    return link;
-}
-
-}  // namespace
-
 CellModule::CellModule(sc_core::sc_module_name name, Environment& environment, Cell& cell)
-    : sc_module(name),
-      in("in", side_count),
-      out("out", side_count),
-      load_in("load_in"),
-      environment_(environment),
-      cell_(cell) {
+    : CellPorts(name), environment_(environment), cell_(cell) {
     cell_.set_host(*this);
     SC_METHOD(run);
     sensitive << wake_;
@@ -35,6 +14,26 @@ CellModule::CellModule(sc_core::sc_module_name name, Environment& environment, i
     own_.reset(&cell_);
 }
 
+/// The link that the cell reads behind a port, null if nothing is bound to it.
+Link* CellModule::link_of(Port<LinkIn>& port) {
+    if (port.size() == 0) return nullptr;
+    if (auto* link = dynamic_cast<Link*>(port[0])) return link;
+    auto& relay = input_relays_.emplace_back(
+        std::make_unique<InputRelay>(environment_.scheduler, environment_.classes.count, *port[0]));
+    relay->link().connect_sink(cell_);
+    channel_events_.push_back(&port->default_event());
+    return &relay->link();
+}
+
+Link* CellModule::link_of(Port<LinkOut>& port) {
+    if (port.size() == 0) return nullptr;
+    if (auto* link = dynamic_cast<Link*>(port[0])) return link;
+    channel_events_.push_back(&port->default_event());
+    return output_relays_
+        .emplace_back(std::make_unique<Link>(environment_.scheduler, environment_.classes.count, *port[0]))
+        .get();
+}
+
 void CellModule::end_of_elaboration() {
     for (int side = 0; side < side_count; ++side) {
         const auto i = std::size_t(side);
@@ -43,9 +42,14 @@ void CellModule::end_of_elaboration() {
     }
     if (Link* link = link_of(load_in)) cell_.connect_load(*link);
     cell_.elaborate();
+    if (channel_events_.empty()) return;
+    SC_METHOD(ring);
+    for (const sc_core::sc_event* event : channel_events_) sensitive << *event;
+    dont_initialize();
 }
 
 void CellModule::run() {
+    for (auto& relay : input_relays_) relay->look();
     const Cycle next = cell_.step(environment_.scheduler.now());
     if (next != never) environment_.scheduler.wake(cell_, next);
 }

@@ -4,26 +4,22 @@
 
 #include <memory>
 #include <systemc>
+#include <vector>
 
+#include "cells/hosts/cell_ports.hpp"
+#include "cells/hosts/link_relay.hpp"
 #include "cells/hosts/prefetch.hpp"
 
 namespace raycell {
 
-/// Ports are bound to links (cells/channels/link.hpp); those over the array's border may stay unbound.
-class CellModule : public sc_core::sc_module, public CellHost {
+/// Its ports may be bound to any channels of their interfaces.
+class CellModule : public CellPorts, public CellHost {
   public:
-    template <typename Interface>
-    using Port = sc_core::sc_port<Interface, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
-
     SC_HAS_PROCESS(CellModule);
     /// Runs a cell of somebody else's, who must keep it.
     CellModule(sc_core::sc_module_name name, Environment& environment, Cell& cell);
     /// Runs a cell of its own.
     CellModule(sc_core::sc_module_name name, Environment& environment, int x, int y);
-
-    sc_core::sc_vector<Port<LinkIn>> in;    ///< by Side
-    sc_core::sc_vector<Port<LinkOut>> out;  ///< by Side
-    Port<LinkIn> load_in;                   ///< from the row's distributor (first column only)
 
     /// All that run in a cycle are woken before the first of them runs: time to ask for their memory.
     void activate(Cell& cell) override {
@@ -37,12 +33,18 @@ class CellModule : public sc_core::sc_module, public CellHost {
 
   private:
     void end_of_elaboration() override;
+    Link* link_of(Port<LinkIn>& port);
+    Link* link_of(Port<LinkOut>& port);
     void run();
+    void ring() { wake_.notify(); }
 
     Environment& environment_;
     std::unique_ptr<Cell> own_;  ///< null: somebody else's
     Cell& cell_;
     sc_core::sc_event wake_;
+    std::vector<std::unique_ptr<InputRelay>> input_relays_;  ///< for channels that are no Links
+    std::vector<std::unique_ptr<Link>> output_relays_;
+    std::vector<const sc_core::sc_event*> channel_events_;
 };
 
 }  // namespace raycell

@@ -3,29 +3,20 @@
 
 #include <functional>
 #include <memory>
-#include <systemc>
 
-#include "cells/channels/link.hpp"
+#include "cells/hosts/cell_ports.hpp"
 
 namespace raycell {
 
 struct Environment;
 
-/// A module that stands in the array instead of one of its own cells. The array binds its ports; those over a
-/// border without a link stay unbound. Its process is sensitive to woken() and runs one cycle at a time; for
-/// a cycle of its own choice it asks Scheduler::wake(*this, cycle). What it does with messages it must count
-/// in Environment::counters, as a Cell does: a run ends when every pixel is done.
-class CellSocket : public sc_core::sc_module, public Client {
+/// A module that stands in the array instead of one of its own cells. The array binds its ports. Its process
+/// is sensitive to woken() and runs one cycle at a time; for a cycle of its own choice it asks
+/// Scheduler::wake(*this, cycle). What it does with messages it must count in Environment::counters, as a
+/// Cell does: a run ends when every pixel is done.
+class CellSocket : public CellPorts, public Client {
   public:
-    template <typename Interface>
-    using Port = sc_core::sc_port<Interface, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
-
-    explicit CellSocket(sc_core::sc_module_name name)
-        : sc_module(name), in("in", side_count), out("out", side_count), load_in("load_in") {}
-
-    sc_core::sc_vector<Port<LinkIn>> in;    ///< by Side
-    sc_core::sc_vector<Port<LinkOut>> out;  ///< by Side
-    Port<LinkIn> load_in;                   ///< from the row's distributor (first column only)
+    using CellPorts::CellPorts;
 
     /// The environment's phase begins in the next cycle, in which the module is woken.
     virtual void begin_phase() {}

@@ -1,0 +1,24 @@
+// The ports of a cell, for modules that stand in an array.
+#pragma once
+
+#include <systemc>
+
+#include "cells/channels/link.hpp"
+
+namespace raycell {
+
+/// Those over a border without a link may stay unbound. A module may be sensitive to its ports.
+class CellPorts : public sc_core::sc_module {
+  public:
+    template <typename Interface>
+    using Port = sc_core::sc_port<Interface, 1, sc_core::SC_ZERO_OR_MORE_BOUND>;
+
+    explicit CellPorts(sc_core::sc_module_name name)
+        : sc_module(name), in("in", side_count), out("out", side_count), load_in("load_in") {}
+
+    sc_core::sc_vector<Port<LinkIn>> in;    ///< by Side
+    sc_core::sc_vector<Port<LinkOut>> out;  ///< by Side
+    Port<LinkIn> load_in;                   ///< from the row's distributor (first column only)
+};
+
+}  // namespace raycell
