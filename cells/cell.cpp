@@ -68,8 +68,7 @@ Cycle Cell::step(Cycle now) {
 void Cell::unpark(Cycle now) { aging_.unparked(router_.unpark(room_made_), now); }
 
 void Cell::record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail) {
-    // Over (cycle, event, detail); the array joins its cells' hashes in their order.
-    for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(hashed)}) hash_.add(word);
+    meter_.note(now, event, hashed);
     if (event != CellEvent::test) moved_ = true;
     tell(now, event, ray, detail);
 }
@@ -150,9 +149,7 @@ bool Cell::test_at(std::size_t place, Cycle now) {
     packet->wait.cause = Stall::none;
     const std::uint32_t cycles = unit_cycles(
         TraversalUnit::test(*packet, {store_, runs_, env_.context, env_.classes, x_, y_}, env_.costs()));
-    env_.counters.rays.ties += packet->visit.event == Visit::Event::hit && packet->visit.hit.tied;
-    env_.counters.traversal_cycles += cycles;
-    statistics_.traversal_cycles += cycles;
+    meter_.tested(env_.meters.counters, packet->visit, cycles);
     traversal_.start(*packet, std::uint32_t(place), now + cycles);
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
            std::uint32_t(packet->visit.event));
@@ -170,7 +167,7 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
             cause_ = Stall::store_port;
             return false;
         }
-        ++env_.counters.answers_sent;
+        ++env_.meters.counters.answers_sent;
         tell(now, CellEvent::answer, answer.id, std::uint32_t(answer.kind));
         deliver(answer, now);
         return true;
@@ -181,16 +178,11 @@ bool Cell::send_answer(const Answer& answer, Cycle now) {
         cause_ = room == Link::Room::full ? Stall::answer_full : Stall::answer_busy;
         return false;
     }
-    ++env_.counters.answers_sent;
+    ++env_.meters.counters.answers_sent;
     tell(now, CellEvent::answer, answer.id, std::uint32_t(answer.kind));
-    ++env_.counters.rays.return_hops;
-    ++statistics_.return_hops;
-    if (env_.phase == Phase::trace) ++env_.pixel_hops[pixel_of(answer.id)];
     Answer* copy = env_.pools.answers.take();
     *copy = answer;
-    const bool intensity = answer.kind == Answer::Kind::intensity;
-    router_.send(way, env_.classes.answer, Message(copy),
-                 intensity ? env_.cycles.intensity : env_.cycles.verdict, env_.answer_routing);
+    raycell::send_answer(copy, *router_.link(way), env_, meter_);
     record_send(now, way, env_.classes.answer, answer.id);
     return true;
 }
@@ -243,13 +235,8 @@ void Cell::move_answer(std::size_t from, Cycle now) {
             stall(wait, room == Link::Room::full ? Stall::answer_full : Stall::answer_busy, id, now);
             return;
         }
-        ++env_.counters.rays.return_hops;
-        ++statistics_.return_hops;
-        if (env_.phase == Phase::trace) ++env_.pixel_hops[pixel_of(answer->id)];
-        const bool intensity = answer->kind == Answer::Kind::intensity;
-        router_.send(way, index, Message(answer), intensity ? env_.cycles.intensity : env_.cycles.verdict,
-                     env_.answer_routing);
-        record_send(now, way, index, answer->id);
+        raycell::send_answer(answer, *router_.link(way), env_, meter_);
+        record_send(now, way, index, id);
     }
     answer_moved_ = true;
     settle(wait, id, now);
@@ -308,18 +295,14 @@ void Cell::try_ray(RayPacket& packet, std::size_t place, Cycle now) {
 }
 
 bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
-    const Need need = packet.need;
-    switch (need.kind) {
+    switch (packet.need.kind) {
         case Need::Kind::output:
             return forward(packet, place, now);
-        case Need::Kind::response: {
-            if (!respond(packet, place, need.answer, need.lost ? env_.context.background : dvec3(0), now))
-                return false;
-            break;
-        }
+        case Need::Kind::response:
+            return respond(packet, place, now);
         case Need::Kind::nothing:
             end_silently(packet, place, now);
-            break;
+            return true;
         case Need::Kind::slot:
             return accept_hit(packet, place, now);
         case Need::Kind::shading_unit:
@@ -331,12 +314,11 @@ bool Cell::move_ray(RayPacket& packet, std::size_t place, Cycle now) {
             decided_ &= ~bit_of(place);
             return true;
     }
-    env_.counters.rays.lost += need.lost;
     return true;
 }
 
 bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
-    Ray& ray = packet.ray;
+    const std::uint64_t id = packet.ray.id;
     const Need need = packet.need;
     const Link::Room room = router_.ask(need.side, need.index, bit_of(place), wakeup_);
     if (room != Link::Room::free) {
@@ -344,49 +326,35 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
         return false;
     }
     remove_from(place);
-    const int cycles = is_shadow(ray.kind) ? env_.cycles.shadow_ray : env_.cycles.ray;
-    if (need.leaves) {
-        ++env_.counters.rays.exterior;
-        ++env_.counters.rays.return_hops;  // the border link, counted with its way back
-        ++statistics_.return_hops;
-    } else {
-        cross(ray, packet.visit.crossing, env_.context.arithmetic);
-        packet.stage = RayPacket::Stage::untested;
-        ++env_.counters.rays.ray_hops;
-        ++statistics_.ray_hops;
-    }
-    if (env_.phase == Phase::trace) ++env_.pixel_hops[pixel_of(ray.id)];
-    ++packet.hops;
-    router_.send(need.side, need.index, Message(&packet), cycles);
-    record_send(now, need.side, need.index, ray.id);
+    send_ray(packet, *router_.link(need.side), env_, meter_);
+    record_send(now, need.side, need.index, id);
     return true;
 }
 
 /// The ray ends in an answer; false if that can't leave yet.
-bool Cell::respond(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now) {
-    Answer answer = answer_to(packet.ray, kind);
-    answer.colour = colour;
-    if (!send_answer(answer, now)) return false;
-    if (kind == Answer::Kind::postponed) {
-        ++env_.counters.rays_destroyed;
-        env_.ledger.add(packet, x_, y_, now);
-        if (env_.phase == Phase::trace) ++env_.picture.pixels[pixel_of(packet.ray.id)].postponed;
-        ++statistics_.postponed;
-        record(now, CellEvent::postpone, std::uint32_t(packet.ray.id), packet.ray.id, 0);
-    } else {
-        ++env_.counters.rays_answered;
-    }
+bool Cell::respond(RayPacket& packet, std::size_t place, Cycle now) {
+    if (!send_answer(response_of(packet, env_.context), now)) return false;
+    remove_from(place);
+    end_ray(packet, env_, meter_);
+    return true;
+}
+
+/// A ray that finds no slot is destroyed; its home will send it again (paper, section 4.2).
+bool Cell::postpone(RayPacket& packet, std::size_t place, Cycle now) {
+    if (!send_answer(answer_to(packet.ray, Answer::Kind::postponed), now)) return false;
+    meter_.postponed(env_.meters.counters);
+    env_.meters.ledger.add(packet, x_, y_, now);
+    if (env_.phase == Phase::trace) ++env_.picture.pixels[pixel_of(packet.ray.id)].postponed;
+    record(now, CellEvent::postpone, std::uint32_t(packet.ray.id), packet.ray.id, 0);
     remove_from(place);
     env_.pools.rays.give_back(&packet);
     return true;
 }
 
 void Cell::end_silently(RayPacket& packet, std::size_t place, Cycle now) {
-    ++env_.counters.rays_silent;
     tell(now, CellEvent::silent, packet.ray.id, 0);
-    env_.counters.last_progress = now;
     remove_from(place);
-    env_.pools.rays.give_back(&packet);
+    end_ray(packet, env_, meter_);
 }
 
 bool Cell::busy() const {

@@ -9,6 +9,7 @@
 #include "cells/cell_host.hpp"
 #include "cells/channels/link.hpp"
 #include "cells/environment.hpp"
+#include "cells/passing.hpp"
 #include "cells/units/aging_arbiter.hpp"
 #include "cells/units/injector.hpp"
 #include "cells/units/input_ports.hpp"
@@ -56,17 +57,14 @@ class alignas(64) Cell final : public Client {
     const RayStore& ray_store() const { return ray_store_; }
     int x() const { return x_; }
     int y() const { return y_; }
-    std::uint64_t schedule_hash() const { return hash_.value(); }
+    std::uint64_t schedule_hash() const { return meter_.hash(); }
     /// What loading leaves in a cell beside its voxels.
     struct Loading {
         std::uint64_t hash = 0;  ///< of its schedule
         std::uint64_t hops = 0;
     };
-    Loading loading() const { return {hash_.value(), statistics_.load_hops}; }
-    void restore(const Loading& loading) {
-        hash_ = Fnv(loading.hash);
-        statistics_.load_hops = loading.hops;
-    }
+    Loading loading() const { return {meter_.hash(), meter_.statistics().load_hops}; }
+    void restore(const Loading& loading) { meter_.restore(loading.hash, loading.hops); }
     /// What the cell has done so far; what is still going on counts up to `now`.
     CellStatistics statistics(Cycle now) const;
     /// Cycles that the units' operations of the moment will still take: counted when each began.
@@ -128,7 +126,8 @@ class alignas(64) Cell final : public Client {
     void try_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool move_ray(RayPacket& packet, std::size_t place, Cycle now);
     bool forward(RayPacket& packet, std::size_t place, Cycle now);
-    bool respond(RayPacket& packet, std::size_t place, Answer::Kind kind, const dvec3& colour, Cycle now);
+    bool respond(RayPacket& packet, std::size_t place, Cycle now);
+    bool postpone(RayPacket& packet, std::size_t place, Cycle now);
     void end_silently(RayPacket& packet, std::size_t place, Cycle now);
     bool send_answer(const Answer& answer, Cycle now);
     // cell_overdue.cpp
@@ -182,7 +181,7 @@ class alignas(64) Cell final : public Client {
     }
     /// To whoever watches alone.
     void tell(Cycle now, CellEvent event, std::uint64_t ray, std::uint32_t detail) const {
-        if (env_.observer) env_.observer->cell_event(*this, now, event, ray, detail);
+        if (env_.meters.observer) env_.meters.observer->cell_event(*this, now, event, ray, detail);
     }
 
     /// Places of slots that hold a child; there are none without slots in use.
@@ -229,8 +228,7 @@ class alignas(64) Cell final : public Client {
     bool moved_ : 1;                  ///< this cycle: something went on, or came home
     bool blocked_ : 1;                ///< this cycle: something wanted to and could not
 
-    DepthRuns runs_;  ///< of the voxels, once they are all there
-    Fnv hash_{0};
+    DepthRuns runs_;            ///< of the voxels, once they are all there
     Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
     TimeOut time_out_;
     Router router_;
@@ -239,7 +237,7 @@ class alignas(64) Cell final : public Client {
     Injector injector_;
     ShadingUnit shading_;
 
-    CellStatistics statistics_;  // its first counters are the last hot ones
+    CellMeter meter_;  // its first counters are the last hot ones
 
     CellStore store_;
     RayStore ray_store_;

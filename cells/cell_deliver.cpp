@@ -6,24 +6,14 @@ namespace raycell {
 
 void Cell::deliver(const Answer& answer, Cycle now) {
     store_port_ = now;
-    ++env_.counters.answers_delivered;
+    meter_.delivered(env_.meters.counters, answer.kind, now);
     record(now, CellEvent::deliver, std::uint32_t(answer.id), answer.id, std::uint32_t(answer.kind));
-    if (answer.kind != Answer::Kind::postponed) env_.counters.last_progress = now;
     want(now + 1);
     const std::uint64_t bit = std::uint64_t(1) << answer.child;
     switch (answer.ray_kind) {
-        case RayKind::primary: {
-            if (answer.kind == Answer::Kind::postponed) {
-                injector_.primary_postponed(env_.machine, answer.id, now);
-                return;
-            }
-            Pixel& pixel = env_.picture.at(x_, y_);
-            pixel.colour = answer.colour;
-            pixel.cycle = std::uint32_t(now - env_.phase_start);
-            injector_.primary_answered();
-            ++env_.counters.pixels_done;
+        case RayKind::primary:
+            end_primary(answer, injector_, env_, x_, y_);
             return;
-        }
         case RayKind::precast:
             store_.lit[answer.slot] &= ~bit;
             return;

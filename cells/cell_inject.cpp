@@ -6,12 +6,8 @@
 namespace raycell {
 
 RayPacket* Cell::launch(const Ray& ray, const Ray* parent) {
-    RayPacket* packet = env_.pools.rays.take();
-    packet->ray = ray;
-    packet->launched = env_.scheduler.now();
-    packet->wait = {env_.scheduler.now(), Stall::traversal};
-    ++env_.counters.rays_sent;
-    if (env_.observer) env_.observer->launched(*this, env_.scheduler.now(), ray, parent);
+    RayPacket* packet = raycell::launch(ray, env_);
+    if (env_.meters.observer) env_.meters.observer->launched(*this, env_.scheduler.now(), ray, parent);
     tell(env_.scheduler.now(), CellEvent::launch, ray.id, std::uint32_t(ray.kind));
     return packet;
 }
@@ -24,15 +20,11 @@ void Cell::feed_own(Cycle now) {
         injector_.load(*launch(
             voxel_shadow_ray(env_.context, store_, next->voxel, next->source, RayKind::precast, x_, y_),
             nullptr));
-        ++env_.counters.rays.precast;
+        ++env_.meters.counters.rays.precast;
         return;
     }
     if (!injector_.primary_due(now, wakeup_)) return;
-    if (injector_.primary_sent()) {
-        ++env_.counters.rays.primary;
-        record_background(env_.picture.at(x_, y_));
-    }
-    injector_.load(*launch(primary_ray(env_.context, x_, y_), nullptr));
+    injector_.load(*launch(begin_primary(injector_, env_, x_, y_), nullptr));
 }
 
 void Cell::feed_children(Cycle now) {
@@ -61,12 +53,12 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
                 return next_child(slot, index, now);
             }
             asked_[hit.voxel] |= bit;
-            ++env_.counters.rays.shadow;
+            ++env_.meters.counters.rays.shadow;
             Ray ray = voxel_shadow_ray(env_.context, store_, hit.voxel, source, RayKind::memo, x_, y_);
             ray.id = ray_id(pixel_of(parent.id), branch_of(ray.id));  // its hops belong to this pixel
             return launch(ray, &parent);
         }
-        ++env_.counters.rays.shadow;
+        ++env_.meters.counters.rays.shadow;
         Ray ray = shadow_ray(env_.context, store_, parent, hit, slot.setup, source, x_, y_);
         ray.slot = index;
         return launch(ray, &parent);
@@ -81,7 +73,7 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
         }
         slot.send_child[child] = false;
         if (retry.attempts() == 0)
-            ++(child == 0 ? env_.counters.rays.reflected : env_.counters.rays.refracted);
+            ++(child == 0 ? env_.meters.counters.rays.reflected : env_.meters.counters.rays.refracted);
         Ray ray = child == 0 ? reflected_ray(env_.context, store_, parent, hit, slot.setup, x_, y_)
                              : refracted_ray(env_.context, store_, parent, hit, slot.setup, x_, y_);
         ray.slot = index;

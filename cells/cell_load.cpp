@@ -5,28 +5,9 @@ namespace raycell {
 
 void Cell::step_load(Cycle now) {
     if (!load_in_) return;
-    LoadItem* item = loading_.work(*load_in_, x_, env_.costs(), now, wakeup_);
-    if (!item) return;
-    const bool last =
-        LoadingUnit::ends_at(*item, x_, env_.width());  // before a span goes on to the next cell
-    if (!last && router_.ask(Side::east, 0, 0, wakeup_) != Link::Room::free) return;
-    record(now, CellEvent::load, std::uint32_t(item->kind), 0, std::uint32_t(item->kind));
-    LoadingUnit::take(*item, x_, store_, env_.context);
-    if (item->kind == LoadItem::Kind::end_of_scene) {
-        ++env_.counters.cells_loaded;
-        env_.counters.last_progress = now;
-    }
-    load_in_->pop(0);
-    loading_.finish();
-    if (last) {
-        ++env_.counters.loads_delivered;
-        env_.pools.loads.give_back(item);
-    } else {
-        ++env_.counters.load_hops;
-        ++statistics_.load_hops;
-        router_.send(Side::east, 0, Message(item), env_.cycles_for(env_.load_bits(*item)));
-    }
-    if (load_in_->front(0).kind != Message::Kind::none) want(now + 1);
+    const auto kind =
+        pass_load(loading_, *load_in_, router_.link(Side::east), store_, env_, meter_, x_, wakeup_);
+    if (kind) record(now, CellEvent::load, std::uint32_t(*kind), 0, std::uint32_t(*kind));
 }
 
 }  // namespace raycell

@@ -15,7 +15,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
         return false;
     }
     const auto index = ray_store_.allocate(packet.ray.generation);
-    if (!index) return respond(packet, place, Answer::Kind::postponed, dvec3(0), now);
+    if (!index) return postpone(packet, place, now);
     // Before the slot is filled: a child that hits its own cell comes from a slot of this same store.
     remove_from(place);
     store_port_ = now;
@@ -25,7 +25,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     slot.since = slot.changed = now;
     slot.wait = {now, Stall::shading};
     slot_changed();
-    ++env_.counters.slots_used;
+    ++env_.meters.counters.slots_used;
     record(now, CellEvent::accept, std::uint32_t(packet.ray.id), packet.ray.id, *index);
     return true;
 }
@@ -79,8 +79,7 @@ void Cell::begin_direct(RayPacket& packet, Cycle now) {
 void Cell::use_shading_unit(ShadingUnit::Job job, std::uint32_t slot, std::uint32_t cycles, Cycle now) {
     cycles = unit_cycles(cycles);
     shading_.start(job, slot, now + cycles);
-    env_.counters.shading_cycles += cycles;
-    statistics_.shading_cycles += cycles;
+    meter_.shaded(env_.meters.counters, cycles);
     want(shading_.done());
 }
 
@@ -117,7 +116,7 @@ void Cell::move_replies(Cycle now) {
         if (send_answer(answer, now)) {
             settle(shading_.direct_wait(), answer.id, now);
             shading_.direct_wait().cause = Stall::none;
-            ++env_.counters.rays_answered;
+            ++env_.meters.counters.rays_answered;
             env_.pools.rays.give_back(packet);
             shading_.free();
             --replies_;
@@ -139,7 +138,7 @@ void Cell::move_replies(Cycle now) {
             continue;
         }
         settle(wait, answer.id, now);
-        ++env_.counters.rays_answered;
+        ++env_.meters.counters.rays_answered;
         release_slot(i, now);
         --replies_;
         went = true;
@@ -155,9 +154,7 @@ void Cell::move_replies(Cycle now) {
 
 void Cell::release_slot(std::uint32_t index, Cycle now) {
     Slot& slot = ray_store_[index];
-    env_.counters.slot_cycles += now - slot.since;
-    statistics_.slot_cycles += now - slot.since;
-    --env_.counters.slots_used;
+    meter_.slot_left(env_.meters.counters, now - slot.since);
     const int generation = slot.packet->ray.generation;
     env_.pools.rays.give_back(slot.packet);
     ray_store_.release(index, generation);

@@ -5,8 +5,8 @@ namespace raycell {
 
 void Cell::add_stall(const Wait& wait, std::uint64_t ray, Cycle now) {
     const Cycle cycles = now - wait.since;
-    statistics_.stalls[wait.cause] += cycles;
-    if (env_.observer) env_.observer->stalled(*this, now, ray, wait.cause, cycles);
+    meter_.stalled(wait.cause, cycles);
+    if (env_.meters.observer) env_.meters.observer->stalled(*this, now, ray, wait.cause, cycles);
 }
 
 Cell::Remaining Cell::remaining(Cycle now) const {
@@ -16,7 +16,7 @@ Cell::Remaining Cell::remaining(Cycle now) const {
 }
 
 CellStatistics Cell::statistics(Cycle now) const {
-    CellStatistics sum = statistics_;
+    CellStatistics sum = meter_.statistics();
     const Remaining to_come = remaining(now);
     sum.traversal_cycles -= to_come.traversal;
     sum.shading_cycles -= to_come.shading;

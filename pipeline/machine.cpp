@@ -129,19 +129,20 @@ bool Machine::watch(void* self, Cycle now) {
         machine.interrupted_ = true;
         return false;
     }
-    machine.activity_.observe(now, env.counters);
-    const Cycle last_progress = ranks ? ranks->agreed().last_progress : env.counters.last_progress;
-    const std::uint64_t destroyed = ranks ? ranks->agreed().rays_destroyed : env.counters.rays_destroyed;
+    machine.activity_.observe(now, env.meters.counters);
+    const Cycle last_progress = ranks ? ranks->agreed().last_progress : env.meters.counters.last_progress;
+    const std::uint64_t destroyed =
+        ranks ? ranks->agreed().rays_destroyed : env.meters.counters.rays_destroyed;
     const Cycle idle = now - std::max(last_progress, env.phase_start);
     if (env.phase == Phase::trace && destroyed > 0 && machine.nothing_comes_home(idle)) {
         // With no new rays on their way, all that is not locked comes to rest.
-        if (!env.draining && env.observer) env.observer->draining(true, now);
+        if (!env.draining && env.meters.observer) env.meters.observer->draining(true, now);
         env.draining = true;
         if (machine.drain_start_ == never) machine.drain_start_ = now;
         if (now - machine.drain_start_ > 1000 * machine.slow_ray_) return false;
     } else if (env.draining) {  // something did come home: go on
         env.draining = false;
-        if (env.observer) env.observer->draining(false, now);
+        if (env.meters.observer) env.meters.observer->draining(false, now);
         machine.drain_start_ = never;
         machine.array_.wake_all(now + 1);
     }
@@ -154,7 +155,7 @@ bool Machine::watch(void* self, Cycle now) {
 
 /// The end-of-scene marks that count loaded cells come last, so they say nothing of how far loading is.
 double Machine::phase_share() const {
-    const Counters& c = environment_.counters;
+    const Counters& c = environment_.meters.counters;
     const auto share = [](std::uint64_t done, std::uint64_t all) {
         return all > 0 ? double(done) / double(all) : 0.0;
     };
@@ -190,7 +191,8 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     if (phase == Phase::load) {
         if (environment_.share.contains(0)) geometry_.start();
     } else {
-        if (environment_.observer) environment_.observer->phase_begins(phase, scheduler_.now() + 1);
+        if (environment_.meters.observer)
+            environment_.meters.observer->phase_begins(phase, scheduler_.now() + 1);
         array_.begin_phase();
     }
     // No free-running clock: this returns when nobody has anything to do any more.
@@ -198,7 +200,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     // SystemC warns on standard output of a start without an event: where the limit allows no cycle more.
     if (ranks_ || scheduler_.next() != never) sc_core::sc_start();
     scheduler_.sample();
-    totals_ = joined(environment_.counters, raycell::join);
+    totals_ = joined(environment_.meters.counters, raycell::join);
     if (!phase_complete()) judge(result);
     // A phase is over with its last message; what woke after that only found nothing to do.
     const Cycle end = result.verdict == Verdict::completed
@@ -226,9 +228,9 @@ void Machine::load(RunResult& result) {
         start_loaded(result);
         return;
     }
-    activity_.begin(scheduler_.now(), environment_.counters, false);
+    activity_.begin(scheduler_.now(), environment_.meters.counters, false);
     run_phase(Phase::load, result);
-    activity_.finish(scheduler_.now() + 1, environment_.counters);
+    activity_.finish(scheduler_.now() + 1, environment_.meters.counters);
     result.load_activity = activity_.activity();
     join_activity(result.load_activity);
     // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
@@ -243,7 +245,7 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     load(result);
     const auto going = [&] { return result.verdict == Verdict::completed; };
     const Cycle next = going() ? 1 : 0;  // what never began does not begin after the run's end
-    activity_.begin(scheduler_.now() + next, environment_.counters, true);
+    activity_.begin(scheduler_.now() + next, environment_.meters.counters, true);
     for (Link& link : array_.links()) link.reset_statistics();
     if (environment_.context.traffic) {
         for (Cell& cell : array_.cells()) {
@@ -266,7 +268,7 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
             result.trace_start = scheduler_.now() + 1;
             run_phase(Phase::trace, result);
         }
-        activity_.finish(scheduler_.now() + next, environment_.counters);
+        activity_.finish(scheduler_.now() + next, environment_.meters.counters);
         result.activity = activity_.activity();
         join_activity(result.activity);
     }
@@ -348,7 +350,7 @@ void Machine::collect(RunResult& result) const {
             (double(result.trace_cycles) * double(environment_.width()) * double(environment_.height()));
     }
     result.schedule_hash = joined_schedule_hash();
-    result.ledger = environment_.ledger;
+    result.ledger = environment_.meters.ledger;
     join_ledger(result.ledger);
     collect_time_outs(result);
     collect_buffers(result);

@@ -71,7 +71,7 @@ void Machine::visit_loading(std::vector<std::uint64_t>& numbers, bool taking, Ru
         precomputation_.restore(stages[1]);
         distribution_.row(0).restore(stages[2]);  // what counts is the sum
     }
-    Counters& c = environment_.counters;
+    Counters& c = environment_.meters.counters;
     for (std::uint64_t* count :
          {&c.load_hops, &c.loads_sent, &c.loads_delivered, &c.cells_loaded, &c.last_progress})
         counts.visit(*count);
@@ -111,7 +111,7 @@ void Machine::start_loaded(RunResult& result) {
     result.loading = same ? LoadedBy::saved : LoadedBy::saved_other_timing;
     result.buffers.push_back({"load", 0, 0});
     visit_loading(preloaded_->counts, true, result);
-    totals_ = environment_.counters;
+    totals_ = environment_.meters.counters;
     for (std::size_t i = 0; i < preloaded_->cells.size(); ++i)
         array_.cells()[i].store() = std::move(preloaded_->cells[i]);
     preloaded_.reset();

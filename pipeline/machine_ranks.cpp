@@ -7,7 +7,7 @@
 namespace raycell {
 
 RankProgress Machine::progress() const {
-    const Counters& c = environment_.counters;
+    const Counters& c = environment_.meters.counters;
     RankProgress mine;
     mine.last_progress = c.last_progress;
     mine.rays_destroyed = c.rays_destroyed;
@@ -91,7 +91,7 @@ void Machine::join_ledger(Ledger& ledger) const {
 /// Of its own rows a rank has what came home. Hops are counted, and first hits recorded, wherever they
 /// happen: by any rank for any pixel, a first hit by one alone.
 Picture Machine::whole_picture() const {
-    const std::vector<std::uint32_t>& hops = environment_.pixel_hops;
+    const std::vector<std::uint32_t>& hops = environment_.meters.pixel_hops;
     if (!ranks_) {
         Picture picture = picture_;
         for (std::size_t i = 0; i < hops.size(); ++i) picture.pixels[i].hops = hops[i];

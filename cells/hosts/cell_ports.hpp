@@ -19,6 +19,18 @@ class CellPorts : public sc_core::sc_module {
     sc_core::sc_vector<Port<LinkIn>> in;    ///< by Side
     sc_core::sc_vector<Port<LinkOut>> out;  ///< by Side
     Port<LinkIn> load_in;                   ///< from the row's distributor (first column only)
+
+    // What is bound to them; null over a border without a link.
+    LinkIn* input(Side side) { return bound(in[std::size_t(side)]); }
+    LinkOut* output(Side side) { return bound(out[std::size_t(side)]); }
+    /// The way in of load messages: west of the first column the distributor's.
+    LinkIn* load_input() { return load_in.size() > 0 ? load_in[0] : input(Side::west); }
+
+  private:
+    template <typename Interface>
+    static Interface* bound(Port<Interface>& port) {
+        return port.size() > 0 ? port[0] : nullptr;
+    }
 };
 
 }  // namespace raycell

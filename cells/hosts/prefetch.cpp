@@ -18,7 +18,8 @@ void Prefetch::cell(const void* client) {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
     // What follows the first counters of the statistics is cold.
-    static_assert(offsetof(Cell, statistics_) + offsetof(CellStatistics, stalls) <= hot_lines * line);
+    constexpr std::size_t counters = offsetof(CellMeter, statistics_) + offsetof(CellStatistics, stalls);
+    static_assert(offsetof(Cell, meter_) + counters <= hot_lines * line);
     static_assert(offsetof(Cell, store_) > hot_lines * line);
 #pragma GCC diagnostic pop
     const char* at = static_cast<const char*>(client);
@@ -107,7 +108,7 @@ void Prefetch::outputs(const Cell& cell) const {
         const Answer* answer = cell.inputs_.answer(from, cell.env_.scheduler.now());
         if (!answer || cell.is_home(*answer)) continue;
         output(cell, cell.route(*answer), cell.env_.classes.answer);
-        fetch_line(&cell.env_.pixel_hops[pixel_of(answer->id)]);
+        fetch_line(&cell.env_.meters.pixel_hops[pixel_of(answer->id)]);
     }
 }
 

@@ -266,7 +266,7 @@ double Probe::expected_bytes(Cycle now) const {
         if (share > least_share) expected = bytes / share;
     }
     const double pixels = double(env_.width()) * double(env_.height());
-    const double share = env_.phase == Phase::trace ? double(env_.counters.pixels_done) / pixels : 0;
+    const double share = env_.phase == Phase::trace ? double(env_.meters.counters.pixels_done) / pixels : 0;
     if (share > least_share) {
         const double before = double(phase_bytes_);
         const double by_pixels = before + (bytes - before) / share;

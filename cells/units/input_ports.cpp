@@ -8,15 +8,14 @@ void InputPorts::elaborate(const BufferClasses& classes) {
         if (!in) continue;
         const bool horizontal = side % 2 == 0;
         for (int index = 0; index < classes.count; ++index) {
-            std::uint32_t bits = index == classes.answer ? answer_bit(std::size_t(side)) : 0;
-            const bool answers_only = index == classes.answer && classes.count > 1;
+            std::uint32_t bits = classes.holds_answers(index) ? answer_bit(std::size_t(side)) : 0;
             // What comes in at one side runs towards the other.
-            if (!answers_only && classes.used(index, horizontal, opposite(Side(side)))) {
+            if (classes.holds_rays(index) && classes.used(index, horizontal, opposite(Side(side)))) {
                 bits |= 1U << count_;
                 inputs_[count_++] = RayInput(Side(side), in->place(index));
             }
             if (bits) in->watch(index, bits);
-            if (index == classes.answer) answer_places_[std::size_t(side)] = in->place(index);
+            if (classes.holds_answers(index)) answer_places_[std::size_t(side)] = in->place(index);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 namespace raycell {
 
-LoadItem* LoadingUnit::work(const Link& from, int x, const CostTable& costs, Cycle now, Wakeup& wakeup) {
+LoadItem* LoadingUnit::work(const LinkIn& from, int x, const CostTable& costs, Cycle now, Wakeup& wakeup) {
     const Message message = from.front(0);
     if (message.kind != Message::Kind::load) return nullptr;
     if (item_ != message.load) {  // just arrived

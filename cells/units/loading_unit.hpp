@@ -13,7 +13,7 @@ class LoadingUnit {
   public:
     /// Works on the oldest message of `from`, for the cell in column x: load_voxel cycles for a span that has
     /// come to it, load_forward for others. Returns the message when that is over, null before.
-    LoadItem* work(const Link& from, int x, const CostTable& costs, Cycle now, Wakeup& wakeup);
+    LoadItem* work(const LinkIn& from, int x, const CostTable& costs, Cycle now, Wakeup& wakeup);
     /// What the message leaves in the cell of column x; a span goes on to the next column.
     static void take(LoadItem& item, int x, CellStore& store, const Context& context);
     /// Whether a load message ends in the cell of column x, before take().

@@ -39,11 +39,6 @@ class Router {
         }
         return room;
     }
-    /// Starts a message over a side; see Link::send().
-    void send(Side side, int index, const Message& message, int cycles, int later = 0) {
-        links_[std::size_t(side)]->send(index, message, cycles, later);
-    }
-
     /// Bits of what waits for room behind an output.
     std::uint32_t parked() const { return parked_; }
     /// Room was made behind the outputs whose bits are set: who is parked on them may ask again. Clears the

@@ -23,7 +23,8 @@ struct Answer {
 };
 Answer answer_to(const Ray& ray, Answer::Kind kind);
 
-/// Bits of the messages, for an array of width x height cells and M slots; docs/reference/cell.md has the table.
+/// Bits of the messages, for an array of width x height cells and M slots; docs/reference/cell.md has the
+/// table.
 struct MessageBits {
     int ray = 0;
     int shadow_ray = 0;  ///< a ray with its distance to the source
@@ -50,6 +51,8 @@ struct BufferClasses {
     int count = 2;   ///< buffers that an index below may name
     int answer = 1;  ///< class of answers
     int ray(const Ray& r) const;
+    bool holds_answers(int index) const { return index == answer; }
+    bool holds_rays(int index) const { return index != answer || count == 1; }
     bool used(int index, bool horizontal,
               Side side) const;  ///< whether a link in this direction has the buffer
     /// The classes, as bits, of a link over this side of its source.

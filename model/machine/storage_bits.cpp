@@ -18,8 +18,7 @@ void for_each_buffer(const BufferClasses& classes, const See& see) {
     for (const Side side : all_sides) {
         for (int index = 0; index < classes.count; ++index) {
             if (!classes.used(index, is_horizontal(side), side)) continue;
-            const bool answers = index == classes.answer;
-            see(!answers || classes.count == 1, answers);
+            see(classes.holds_rays(index), classes.holds_answers(index));
         }
     }
 }

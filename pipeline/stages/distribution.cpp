@@ -49,7 +49,7 @@ Cycle RowDistributor::step(Cycle now) {
     }
     if (now < ready_) return ready_;
     if (to_row_ && east->can_send(0, retry)) {
-        ++env.counters.loads_sent;
+        ++env.meters.counters.loads_sent;
         east->send(0, Message(to_row_), env.cycles_for(env.load_bits(*to_row_)));
         to_row_ = nullptr;
     }

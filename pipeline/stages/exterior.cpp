@@ -129,22 +129,22 @@ StageStatistics Exterior::statistics() const {
 bool Exterior::answer(Processor& processor, Cycle now, Cycle& retry) {
     Environment& env = environment();
     if (processor.silent) {
-        ++env.counters.rays_silent;
-        env.counters.last_progress = now;
+        ++env.meters.counters.rays_silent;
+        env.meters.counters.last_progress = now;
         return true;
     }
     const BorderPort& port = ports_[processor.port];
     if (!port.to_cell->can_send(env.classes.answer, retry)) return false;
     const bool intensity = processor.answer.kind == Answer::Kind::intensity;
-    if (env.observer) env.observer->exterior_answered(port.x, port.y, now, processor.answer);
+    if (env.meters.observer) env.meters.observer->exterior_answered(port.x, port.y, now, processor.answer);
     Answer* answer = env.pools.answers.take();
     *answer = processor.answer;
     port.to_cell->send(env.classes.answer, Message(answer),
                        env.cycles_for(intensity ? env.bits.intensity : env.bits.verdict), env.answer_routing);
-    ++env.counters.rays_answered;
-    ++env.counters.answers_sent;
-    ++env.counters.rays.return_hops;
-    if (env.phase == Phase::trace) ++env.pixel_hops[pixel_of(processor.answer.id)];
+    ++env.meters.counters.rays_answered;
+    ++env.meters.counters.answers_sent;
+    ++env.meters.counters.rays.return_hops;
+    env.count_hop(processor.answer.id);
     return true;
 }
 

@@ -37,7 +37,7 @@ Measured measure(const Traffic& traffic, const Granularity& granularity, const R
     const double traced = clock_seconds();
     run(bench);
     measured.seconds = clock_seconds() - traced;
-    const Counters& counters = bench.environment->counters;
+    const Counters& counters = bench.environment->meters.counters;
     if (counters.pixels_done != std::uint64_t(cells)) throw std::logic_error("a ray was not answered");
     measured.hops = counters.rays.ray_hops + counters.rays.return_hops;
     measured.cycles = counters.last_progress;

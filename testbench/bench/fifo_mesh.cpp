@@ -81,21 +81,21 @@ class FifoCell : public sc_core::sc_module {
         if (port->num_free() == 0) return false;
         cross(packet.ray, packet.visit.crossing, environment_.context.arithmetic);
         packet.stage = RayPacket::Stage::untested;
-        ++environment_.counters.rays.ray_hops;
+        ++environment_.meters.counters.rays.ray_hops;
         port->nb_write({Message(&packet)});
         return true;
     }
     bool send_home(Answer& answer) {
         if (answer.home_x == x_ && answer.home_y == y_) {
             environment_.picture.at(x_, y_).colour = answer.colour;
-            ++environment_.counters.pixels_done;
+            ++environment_.meters.counters.pixels_done;
             environment_.pools.answers.give_back(&answer);
             return true;
         }
         Out& port =
             out[std::size_t(way_home(answer, x_, y_)) * classes + std::size_t(environment_.classes.answer)];
         if (port->num_free() == 0) return false;
-        ++environment_.counters.rays.return_hops;
+        ++environment_.meters.counters.rays.return_hops;
         port->nb_write({Message(&answer)});
         return true;
     }
@@ -156,7 +156,7 @@ Measured run_sc_fifo(const Traffic& traffic) {
     const double traced = clock_seconds();
     sc_core::sc_start();
     measured.seconds = clock_seconds() - traced;
-    const Counters& counters = mesh.environment->counters;
+    const Counters& counters = mesh.environment->meters.counters;
     if (counters.pixels_done != mesh.cells.size()) throw std::logic_error("a ray was not answered");
     measured.hops = counters.rays.ray_hops + counters.rays.return_hops;
     return measured;

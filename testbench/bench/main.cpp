@@ -23,7 +23,8 @@ using Case = Measured (*)(const Traffic&);
 void run_case(benchmark::State& state, Case run) {
     static int elaborations = 0;
     if (++elaborations > 1) {
-        state.SkipWithError("one case a process: name it with --benchmark_filter, or use scripts/study bench");
+        state.SkipWithError(
+            "one case a process: name it with --benchmark_filter, or use scripts/study bench");
         return;
     }
     const Traffic& traffic = *new Traffic(int(state.range(0)));  // outlives the machine

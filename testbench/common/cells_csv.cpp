@@ -39,7 +39,7 @@ std::vector<Inputs> inputs_of(Machine& machine) {
         const bool horizontal = side == Side::east || side == Side::west;
         for (int index = 0; index < link.classes(); ++index) {
             if (!classes.used(index, horizontal, side)) continue;
-            const bool answers = classes.count > 1 && index == classes.answer;
+            const bool answers = !classes.holds_rays(index);
             (answers ? cell.answers : cell.rays).add(link.statistics(index));
         }
         cell.busy_cycles += link.busy_cycles();

@@ -155,7 +155,7 @@ Json RankRun::report(Machine& machine, std::uint64_t memory_bytes) {
         std::uint64_t memory;
         RankExchange::Statistics meetings;
     };
-    const Counters& c = machine.environment().counters;
+    const Counters& c = machine.environment().meters.counters;
     ByteWriter bytes;
     bytes.put(Mine{exchange_->share().rows().size(), c.load_hops + c.rays.ray_hops + c.rays.return_hops,
                    memory_bytes, exchange_->statistics()});

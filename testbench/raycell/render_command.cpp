@@ -101,14 +101,14 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
         run.golden = std::make_unique<GoldenRun>(options, configuration, machine, outputs);
         observers.add(run.golden->observer());
     }
-    if (!observers.empty()) machine.environment().observer = &observers;
+    if (!observers.empty()) machine.environment().meters.observer = &observers;
     if (!options.probes.cells.empty()) run.probes = std::make_unique<ProbeRun>(options, machine, outputs);
     const bool progress = shows_progress(options) && !watch && (!ranks || ranks->first());
     run.interruptible = std::make_unique<Interruptible>(machine);
     run.result = machine.run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
     if (watch) watch->finish(machine.environment().scheduler.now());
-    machine.environment().observer = nullptr;
+    machine.environment().meters.observer = nullptr;
     if (run.probes) run.probes->finish();
     if (run.golden) run.golden->finish();
     if (options.probes.on_deadlock && run.result.verdict == Verdict::deadlock) {

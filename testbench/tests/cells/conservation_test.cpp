@@ -108,7 +108,7 @@ void expect_miscounting_is_seen(bool while_loading) {
     std::size_t i = 0;
     for (const auto& [name, counter] : counters) {
         SCOPED_TRACE(name);
-        ++(machines[++i].environment().counters.*counter);
+        ++(machines[++i].environment().meters.counters.*counter);
         try {
             machines.run_until(i, limit);
             ADD_FAILURE() << "nothing was noticed";

@@ -170,8 +170,8 @@ TEST_P(OwnChannels, ChangeNothingOfWhatACellBetweenThemDoes) {
     EXPECT_GT(plain.log.size(), 3u * 500);
     EXPECT_EQ(plain.log, linked.log);
     EXPECT_EQ(plain.cell->cell().schedule_hash(), linked.cell->cell().schedule_hash());
-    EXPECT_EQ(plain.environment->counters.rays.ray_hops, linked.environment->counters.rays.ray_hops);
-    EXPECT_GT(plain.environment->counters.rays.return_hops, 100u);
+    EXPECT_EQ(plain.environment->meters.counters.rays.ray_hops, linked.environment->meters.counters.rays.ray_hops);
+    EXPECT_GT(plain.environment->meters.counters.rays.return_hops, 100u);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEachNetwork, OwnChannels,

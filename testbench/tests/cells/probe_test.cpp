@@ -136,7 +136,7 @@ void expect_buffers_as_recorded(Networks networks, int depth) {
         into.push_back(&probed.timed->array().links()[i]);
         into.back()->set_observer(&record);
     }
-    probed.timed->environment().observer = &record;
+    probed.timed->environment().meters.observer = &record;
     const vcd::Dump dump = probed.run();
     ASSERT_EQ(probed.result.verdict, Verdict::completed);
     std::size_t moved = 0;
@@ -253,8 +253,7 @@ TEST(TimedProbe, HeadsInADeadlockOfSharedBuffersWaitForRoomAndForNothingThatPass
     ASSERT_EQ(probed.result.verdict, Verdict::deadlock);
     auto causes = causes_at_end(probed, dump);
     EXPECT_GT(causes["output_full"], 0);
-    for (const char* passing :
-         {"none", "traversal", "output_busy", "store_port", "answer_busy", "no_slot"}) {
+    for (const char* passing : {"none", "traversal", "output_busy", "store_port", "answer_busy", "no_slot"}) {
         EXPECT_EQ(causes[passing], 0) << passing;
     }
 }

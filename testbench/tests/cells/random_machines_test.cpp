@@ -148,7 +148,7 @@ bool must_end(const Drawn& drawn) {
 
 /// Everything that moving would change, without asking the schedule.
 std::vector<std::uint64_t> standing(Machine& machine) {
-    const Counters& c = machine.environment().counters;
+    const Counters& c = machine.environment().meters.counters;
     std::vector<std::uint64_t> all{c.rays_sent,    c.rays_answered,     c.rays_silent,   c.rays_destroyed,
                                    c.answers_sent, c.answers_delivered, c.rays.ray_hops, c.rays.return_hops,
                                    c.pixels_done,  c.traversal_cycles,  c.shading_cycles};
@@ -189,7 +189,7 @@ void expect_knots(const WaitGraph& graph) {
 }
 
 void expect_conserved(const Environment& environment, bool completed) {
-    const Counters& c = environment.counters;
+    const Counters& c = environment.meters.counters;
     const std::uint64_t open = c.rays_sent - c.rays_answered - c.rays_silent - c.rays_destroyed;
     const std::uint64_t there = environment.pools.rays.in_use();
     EXPECT_GE(open, there);

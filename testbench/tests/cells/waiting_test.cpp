@@ -178,7 +178,7 @@ TEST(CellWaiting, AWholeRunCountsTheSameWhenItsCellsAreWokenForNothing) {
     const RunResult expected = calm.run();
     Environment& env = woken.environment();
     env.scheduler.set_sampler([&](Cycle now) {
-        if (env.phase != Phase::trace || env.counters.pixels_done == 256) return;
+        if (env.phase != Phase::trace || env.meters.counters.pixels_done == 256) return;
         for (int i = 0; i < 8; ++i) {
             const int cell = random.whole(0, 255);
             env.scheduler.wake(woken.array().cell(cell % 16, cell / 16), now + 1);

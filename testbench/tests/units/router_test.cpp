@@ -47,7 +47,7 @@ TEST(Router, RunsAgainWhenTheWiresAreFree) {
     Link deep(o.scheduler, 1, 2);
     o.router.connect(Side::west, deep);
     EXPECT_EQ(o.ask(Side::west, 1, 10), Link::Room::free);
-    o.router.send(Side::west, 0, Message(&o.packet), 5);
+    o.router.link(Side::west)->send(0, Message(&o.packet), 5);
     EXPECT_EQ(o.ask(Side::west, 1, 12), Link::Room::wires_busy);
     EXPECT_EQ(o.wakeup.next, 15u);
     EXPECT_EQ(o.router.parked(), 0u);
@@ -57,7 +57,7 @@ TEST(Router, RunsAgainWhenTheWiresAreFree) {
 TEST(Router, ParksWhoFindsNoRoomUntilThereIsSome) {
     Outputs o;
     ASSERT_EQ(o.ask(Side::east, 1, 10), Link::Room::free);
-    o.router.send(Side::east, 0, Message(&o.packet), 1);
+    o.router.link(Side::east)->send(0, Message(&o.packet), 1);
     EXPECT_EQ(o.ask(Side::east, 4, 20), Link::Room::full);
     EXPECT_EQ(o.ask(Side::east, 32, 20), Link::Room::full);
     EXPECT_EQ(o.router.parked(), 36u);
@@ -75,7 +75,7 @@ TEST(Router, LetsThoseWaitWhoAreParkedOnAnotherOutput) {
     Outputs o;
     for (const Side side : {Side::east, Side::south}) {
         ASSERT_EQ(o.ask(side, 0, 10), Link::Room::free);
-        o.router.send(side, 0, Message(&o.packet), 1);
+        o.router.link(side)->send(0, Message(&o.packet), 1);
     }
     o.ask(Side::east, 4, 20);
     o.ask(Side::south, 8, 20);

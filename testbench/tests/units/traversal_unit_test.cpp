@@ -16,8 +16,7 @@ struct Test1 {
         set_direction(packet.ray, {1, 0, 0}, unit.context->arithmetic);
     }
     std::uint32_t run(int x) {
-        return TraversalUnit::test(packet, {unit.store, nullptr, 0, *unit.context, classes, x, 1},
-                                   unit.costs);
+        return TraversalUnit::test(packet, {unit.store, {}, *unit.context, classes, x, 1}, unit.costs);
     }
 };
 

@@ -1,0 +1,23 @@
+#include "cells/meters/counters.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+namespace raycell {
+
+void join(Counters& sum, const Counters& other) {
+    // All but the last are sums of words, so that none can be forgotten here.
+    static_assert(std::is_trivially_copyable_v<Counters> && sizeof(Counters) % sizeof(std::uint64_t) == 0);
+    constexpr std::size_t words = sizeof(Counters) / sizeof(std::uint64_t);
+    static_assert(offsetof(Counters, last_progress) == (words - 1) * sizeof(std::uint64_t));
+    std::uint64_t a[words];
+    std::uint64_t b[words];
+    std::memcpy(a, &sum, sizeof sum);
+    std::memcpy(b, &other, sizeof other);
+    for (std::size_t i = 0; i + 1 < words; ++i) a[i] += b[i];
+    a[words - 1] = std::max(a[words - 1], b[words - 1]);
+    std::memcpy(static_cast<void*>(&sum), a, sizeof sum);
+}
+
+}  // namespace raycell

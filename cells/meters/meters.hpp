@@ -1,0 +1,104 @@
+// What a run counts, and whom it tells: the one way out of an array's cells.
+#pragma once
+
+#include <vector>
+
+#include "cells/channels/observer.hpp"
+#include "cells/meters/counters.hpp"
+#include "cells/meters/ledger.hpp"
+#include "model/numbers/hash.hpp"
+
+namespace raycell {
+
+/// Of an array.
+struct Meters {
+    Counters counters;
+    /// Per pixel, for Pixel::hops: apart from the picture, because every hop of a traced ray comes here and a
+    /// picture is larger than a cache.
+    std::vector<std::uint32_t> pixel_hops;
+    Ledger ledger;
+    CellObserver* observer = nullptr;  ///< told what every cell does; null: nobody
+};
+
+/// Of one cell: its statistics and the hash of its schedule. What it counts it counts for the array too.
+class CellMeter {
+  public:
+    const CellStatistics& statistics() const { return statistics_; }
+    std::uint64_t hash() const { return hash_.value(); }
+    /// What loading leaves, from a saved array.
+    void restore(std::uint64_t hash, std::uint64_t load_hops) {
+        hash_ = Fnv(hash);
+        statistics_.load_hops = load_hops;
+    }
+
+    /// Into the schedule's hash, over (cycle, event, detail); the array joins its cells' in their order.
+    void note(Cycle now, CellEvent event, std::uint32_t detail) {
+        for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(detail)}) hash_.add(word);
+    }
+    /// A load message was taken; it `ends` here or goes on.
+    void loaded(Counters& all, LoadItem::Kind kind, bool ends, Cycle now) {
+        if (kind == LoadItem::Kind::end_of_scene) {
+            ++all.cells_loaded;
+            all.last_progress = now;
+        }
+        if (ends) {
+            ++all.loads_delivered;
+        } else {
+            ++all.load_hops;
+            ++statistics_.load_hops;
+        }
+    }
+    /// A ray's test began, which takes so many cycles.
+    void tested(Counters& all, const Visit& visit, std::uint32_t cycles) {
+        all.rays.ties += visit.event == Visit::Event::hit && visit.hit.tied;
+        all.traversal_cycles += cycles;
+        statistics_.traversal_cycles += cycles;
+    }
+    /// A ray left, to a neighbour or over the array's border, whose link is counted with its way back.
+    void ray_left(Counters& all, bool over_border) {
+        if (over_border) {
+            ++all.rays.exterior;
+            ++all.rays.return_hops;
+            ++statistics_.return_hops;
+        } else {
+            ++all.rays.ray_hops;
+            ++statistics_.ray_hops;
+        }
+    }
+    void answer_left(Counters& all) {
+        ++all.rays.return_hops;
+        ++statistics_.return_hops;
+    }
+    /// An answer is home.
+    void delivered(Counters& all, Answer::Kind kind, Cycle now) {
+        ++all.answers_delivered;
+        if (kind != Answer::Kind::postponed) all.last_progress = now;
+    }
+    void postponed(Counters& all) {
+        ++all.rays_destroyed;
+        ++statistics_.postponed;
+    }
+    void ended_silently(Counters& all, Cycle now) {
+        ++all.rays_silent;
+        all.last_progress = now;
+    }
+    /// A job of the shading unit began.
+    void shaded(Counters& all, std::uint32_t cycles) {
+        all.shading_cycles += cycles;
+        statistics_.shading_cycles += cycles;
+    }
+    /// A slot is free again, after so many cycles.
+    void slot_left(Counters& all, Cycle cycles) {
+        all.slot_cycles += cycles;
+        statistics_.slot_cycles += cycles;
+        --all.slots_used;
+    }
+    void stalled(Stall cause, Cycle cycles) { statistics_.stalls[cause] += cycles; }
+
+  private:
+    friend class Prefetch;
+    Fnv hash_{0};
+    CellStatistics statistics_;
+};
+
+}  // namespace raycell

@@ -1,0 +1,75 @@
+#include "cells/passing.hpp"
+
+namespace raycell {
+
+RayPacket* launch(const Ray& ray, Environment& environment) {
+    const Cycle now = environment.scheduler.now();
+    RayPacket* packet = environment.pools.rays.take();
+    packet->ray = ray;
+    packet->launched = now;
+    packet->wait = {now, Stall::traversal};
+    ++environment.meters.counters.rays_sent;
+    return packet;
+}
+
+Answer response_of(const RayPacket& packet, const Context& context) {
+    Answer answer = answer_to(packet.ray, packet.need.answer);
+    if (packet.need.lost) answer.colour = context.background;
+    return answer;
+}
+
+void end_ray(RayPacket& packet, Environment& environment, CellMeter& meter) {
+    Counters& counters = environment.meters.counters;
+    if (packet.need.kind == Need::Kind::nothing) {
+        meter.ended_silently(counters, environment.scheduler.now());
+    } else {
+        ++counters.rays_answered;
+    }
+    counters.rays.lost += packet.need.lost;
+    environment.pools.rays.give_back(&packet);
+}
+
+Ray begin_primary(Injector& injector, Environment& environment, int x, int y) {
+    if (injector.primary_sent()) {
+        ++environment.meters.counters.rays.primary;
+        record_background(environment.picture.at(x, y));
+    }
+    return primary_ray(environment.context, x, y);
+}
+
+void end_primary(const Answer& answer, Injector& injector, Environment& environment, int x, int y) {
+    const Cycle now = environment.scheduler.now();
+    if (answer.kind == Answer::Kind::postponed) {
+        injector.primary_postponed(environment.machine, answer.id, now);
+        return;
+    }
+    Pixel& pixel = environment.picture.at(x, y);
+    pixel.colour = answer.colour;
+    pixel.cycle = std::uint32_t(now - environment.phase_start);
+    injector.primary_answered();
+    ++environment.meters.counters.pixels_done;
+}
+
+std::optional<LoadItem::Kind> pass_load(LoadingUnit& unit, LinkIn& from, LinkOut* east, CellStore& store,
+                                        Environment& environment, CellMeter& meter, int x, Wakeup& wakeup) {
+    const Cycle now = environment.scheduler.now();
+    LoadItem* item = unit.work(from, x, environment.costs(), now, wakeup);
+    if (!item) return std::nullopt;
+    const LoadItem::Kind kind = item->kind;
+    // Before a span goes on to the next cell.
+    const bool ends = LoadingUnit::ends_at(*item, x, environment.width());
+    if (!ends && !east->can_send(0, wakeup.next)) return std::nullopt;
+    meter.loaded(environment.meters.counters, kind, ends, now);
+    LoadingUnit::take(*item, x, store, environment.context);
+    from.pop(0);
+    unit.finish();
+    if (ends) {
+        environment.pools.loads.give_back(item);
+    } else {
+        east->send(0, Message(item), environment.cycles_for(environment.load_bits(*item)));
+    }
+    if (from.front(0).kind != Message::Kind::none) wakeup.at(now + 1);
+    return kind;
+}
+
+}  // namespace raycell
