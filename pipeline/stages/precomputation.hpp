@@ -17,8 +17,8 @@ class Precomputation : public Stage {
     /// Load messages in no link.
     std::size_t holds() const { return item_ ? 1 : 0; }
     /// Its part of the wait-for graph.
-    void add_places(WaitMap& map) const;
-    void add_waits(WaitMap& map) const;
+    void add_places(WaitMap& map, const Link& input) const;
+    void add_waits(WaitMap& map, const Link& input) const;
 
   private:
     Cycle step(Cycle now) override;

@@ -1,7 +1,9 @@
 // What load messages wait for: the wait-for graph of a machine that loads. Messages only go down the
 // pipeline, so something always moves; the graph says what holds up the others.
 #include "cells/deadlock/cell_waits.hpp"
-#include "pipeline/machine.hpp"
+#include "pipeline/stages/distribution.hpp"
+#include "pipeline/stages/geometry.hpp"
+#include "pipeline/stages/precomputation.hpp"
 
 namespace raycell {
 namespace {
@@ -87,61 +89,16 @@ void Geometry::add_waits(WaitMap& map) const {
         map.set(*node, wants_out(map, now, ready_, link_of(out), "precomputation"));
 }
 
-void Precomputation::add_places(WaitMap& map) const {
+void Precomputation::add_places(WaitMap& map, const Link& input) const {
+    add_buffer(map, input, 0, place(Kind::buffer, 0, "input of precomputation"));
     if (item_) add_stage(map, *this, 0, "precomputation", *item_, ready_);
 }
 
-void Precomputation::add_waits(WaitMap& map) const {
+void Precomputation::add_waits(WaitMap& map, const Link& input) const {
+    set_input(map, input, *this);
     const Cycle now = environment().scheduler.now();
     if (const auto node = map.find(this, Kind::stage, 0))
         map.set(*node, wants_out(map, now, ready_, link_of(out), "the first row's distributor"));
-}
-
-const Link& Machine::input_of_row(int y) const {
-    const std::size_t no_link = environment_.share.rows().front() == 0;  // leads into row 0
-    return y == 0 ? to_distribution_
-                  : *distribution_.links()[std::size_t(environment_.share.place(y)) - no_link];
-}
-
-void Machine::add_places(const Band& band, WaitMap& map) const {
-    for (int y = band.first; y < band.end; ++y) {
-        if (environment_.phase == Phase::load) distribution_.row(y).add_places(map, input_of_row(y));
-        for (int x = 0; x < environment_.width(); ++x) raycell::add_places(array_.cell(x, y), map);
-    }
-}
-
-void Machine::add_waits(const Band& band, WaitMap& map) const {
-    for (int y = band.first; y < band.end; ++y) {
-        if (environment_.phase == Phase::load) distribution_.row(y).add_waits(map, input_of_row(y));
-        for (int x = 0; x < environment_.width(); ++x) raycell::add_waits(array_.cell(x, y), map);
-    }
-}
-
-/// Whether what stands before the array or beyond its border is here.
-bool Machine::has_outside() const {
-    return environment_.phase == Phase::load ? environment_.share.contains(0) : exterior_ != nullptr;
-}
-
-void Machine::add_outside_places(WaitMap& map) const {
-    if (!has_outside()) return;
-    if (environment_.phase != Phase::load) {
-        exterior_->add_places(map);
-        return;
-    }
-    geometry_.add_places(map);
-    add_buffer(map, to_precomputation_, 0, place(Kind::buffer, 0, "input of precomputation"));
-    precomputation_.add_places(map);
-}
-
-void Machine::add_outside_waits(WaitMap& map) const {
-    if (!has_outside()) return;
-    if (environment_.phase != Phase::load) {
-        exterior_->add_waits(map);
-        return;
-    }
-    geometry_.add_waits(map);
-    set_input(map, to_precomputation_, precomputation_);
-    precomputation_.add_waits(map);
 }
 
 }  // namespace raycell

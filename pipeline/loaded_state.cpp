@@ -1,12 +1,11 @@
 // What a machine is once it is loaded, apart from its voxels: so that a run that starts with a saved array
 // goes on in the same cycles, with the same schedule and the same figures of loading, as the one that saved
 // it.
+#include "pipeline/loaded_state.hpp"
+
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
-
-#include "model/files/array_file.hpp"
-#include "pipeline/machine.hpp"
 
 namespace raycell {
 namespace {
@@ -55,66 +54,63 @@ void check_loading(const Counters& c, Cycle now, std::size_t cells, const RunRes
         throw std::runtime_error("a loaded array: its cycles and messages contradict each other");
 }
 
-}  // namespace
-
-void Machine::visit_loading(std::vector<std::uint64_t>& numbers, bool taking, RunResult& result) {
+void visit_loading(MachineParts& parts, std::vector<std::uint64_t>& numbers, bool taking, RunResult& result) {
     Counts counts(numbers, taking);
-    Cycle now = scheduler_.now();
+    Cycle now = parts.scheduler.now();
     counts.visit(now);
-    scheduler_.set_now(now);
+    parts.scheduler.set_now(now);
     counts.visit(result.load_cycles);
-    StageStatistics stages[] = {geometry_.statistics(), precomputation_.statistics(),
-                                distribution_.statistics()};
+    StageStatistics stages[] = {parts.geometry.statistics(), parts.precomputation.statistics(),
+                                parts.distribution.statistics()};
     for (StageStatistics& stage : stages) visit_stage(counts, stage);
     if (taking) {
-        geometry_.restore(stages[0]);
-        precomputation_.restore(stages[1]);
-        distribution_.row(0).restore(stages[2]);  // what counts is the sum
+        parts.geometry.restore(stages[0]);
+        parts.precomputation.restore(stages[1]);
+        parts.distribution.row(0).restore(stages[2]);  // what counts is the sum
     }
-    Counters& c = environment_.meters.counters;
+    Counters& c = parts.environment.meters.counters;
     for (std::uint64_t* count :
          {&c.load_hops, &c.loads_sent, &c.loads_delivered, &c.cells_loaded, &c.last_progress})
         counts.visit(*count);
     counts.visit(result.buffers.front().peak);
     counts.visit_real(result.buffers.front().mean);
-    for (Cell& cell : array_.cells()) {
+    for (Cell& cell : parts.array.cells()) {
         Cell::Loading loading = cell.loading();
         counts.visit(loading.hash);
         counts.visit(loading.hops);
         cell.restore(loading);
     }
     counts.finish();
-    if (taking) check_loading(c, now, array_.cells().size(), result);
+    if (taking) check_loading(c, now, parts.array.cells().size(), result);
 }
 
-void Machine::use_loaded(LoadedArray array) {
-    if (array.key != loading_key(environment_.context.scene, environment_.settings) ||
-        array.cells.size() != array_.cells().size())
+}  // namespace
+
+void expect_loaded_for(const MachineParts& parts, const LoadedArray& array) {
+    if (array.key != loading_key(parts.environment.context.scene, parts.environment.settings) ||
+        array.cells.size() != parts.array.cells().size())
         throw std::invalid_argument("a loaded array of another scene, size or voxels");
-    preloaded_ = std::make_unique<LoadedArray>(std::move(array));
 }
 
-/// The voxels are lent, not copied: they are most of what a loaded machine takes.
-void Machine::hand_over_loaded(RunResult& result) {
+void hand_over_loaded(MachineParts& parts, RunResult& result,
+                      const std::function<void(const LoadedArray&)>& to) {
     LoadedArray array;
-    array.key = loading_key(environment_.context.scene, environment_.settings);
-    array.timing = loading_timing(environment_.machine);
-    visit_loading(array.counts, false, result);
-    for (Cell& cell : array_.cells()) array.cells.push_back(std::move(cell.store()));
-    on_loaded_(array);
+    array.key = loading_key(parts.environment.context.scene, parts.environment.settings);
+    array.timing = loading_timing(parts.environment.machine);
+    visit_loading(parts, array.counts, false, result);
+    for (Cell& cell : parts.array.cells()) array.cells.push_back(std::move(cell.store()));
+    to(array);
     for (std::size_t i = 0; i < array.cells.size(); ++i)
-        array_.cells()[i].store() = std::move(array.cells[i]);
+        parts.array.cells()[i].store() = std::move(array.cells[i]);
 }
 
-void Machine::start_loaded(RunResult& result) {
-    const bool same = preloaded_->timing == loading_timing(environment_.machine);
+void start_loaded(MachineParts& parts, LoadedArray& array, RunResult& result) {
+    const bool same = array.timing == loading_timing(parts.environment.machine);
     result.loading = same ? LoadedBy::saved : LoadedBy::saved_other_timing;
     result.buffers.push_back({"load", 0, 0});
-    visit_loading(preloaded_->counts, true, result);
-    totals_ = environment_.meters.counters;
-    for (std::size_t i = 0; i < preloaded_->cells.size(); ++i)
-        array_.cells()[i].store() = std::move(preloaded_->cells[i]);
-    preloaded_.reset();
+    visit_loading(parts, array.counts, true, result);
+    for (std::size_t i = 0; i < array.cells.size(); ++i)
+        parts.array.cells()[i].store() = std::move(array.cells[i]);
 }
 
 }  // namespace raycell

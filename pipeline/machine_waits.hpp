@@ -1,0 +1,34 @@
+// The wait-for graph of a whole machine: of its cells, the stages before them and the exterior beyond them.
+#pragma once
+
+#include <vector>
+
+#include "cells/deadlock/cell_waits.hpp"
+#include "pipeline/machine_parts.hpp"
+
+namespace raycell {
+
+class MachineWaits {
+  public:
+    explicit MachineWaits(const MachineParts& parts) : parts_(parts), ranks_(parts.ranks) {}
+
+    /// What waits for what as the machine stands now; analysed. Of several ranks, all must call it, and all
+    /// have the whole graph.
+    WaitGraph graph() const;
+
+  private:
+    void add_places(const Band& band, WaitMap& map) const;
+    void add_waits(const Band& band, WaitMap& map) const;
+    bool has_outside() const;
+    void add_outside_places(WaitMap& map) const;
+    void add_outside_waits(WaitMap& map) const;
+    struct FarBuffer;
+    void add_far_buffers(const WaitMap& map, int band, std::vector<FarBuffer>& far) const;
+    std::vector<WaitGraph::Index> put_places_together(WaitMap& map) const;
+    void put_together(WaitMap& map) const;
+
+    const MachineParts& parts_;
+    RankExchange* ranks_;
+};
+
+}  // namespace raycell
