@@ -1,8 +1,6 @@
 """What the sweeps' charts share: style, panels, axes, files."""
 import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 plt.rcParams.update({"font.size": 9, "axes.grid": True, "grid.color": "#e5e5e5", "axes.axisbelow": True,
                      "svg.hashsalt": "raycell"})

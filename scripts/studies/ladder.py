@@ -49,9 +49,7 @@ def bits_table(results):
 
 
 def draw(root, cache, results, scene):
-    import matplotlib  # only where it is needed
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
+    from matplotlib import pyplot as plt  # only where it is needed
     figure, axes = plt.subplots(2, len(RUNGS), figsize=(3.1 * len(RUNGS), 6.6))
     for column, rung in enumerate(reversed(RUNGS)):
         prefix = cache / f"{scene}.{rung}.host"

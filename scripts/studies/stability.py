@@ -181,9 +181,7 @@ CHARTS = [slopes, dda_drift, span_drift, normals, grazing, critical, mirrors, of
 
 
 def draw(folder, file):
-    import matplotlib  # only where it is needed
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
+    from matplotlib import pyplot as plt  # only where it is needed
     figure, axes = plt.subplots(4, 3, figsize=(14, 15))
     for axis, chart in zip(axes.flat, CHARTS):
         chart(axis, Study(folder / f"{chart.__name__}.csv"))
