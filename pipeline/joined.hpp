@@ -14,15 +14,15 @@ class Joined {
   public:
     explicit Joined(const MachineParts& parts) : parts_(parts), ranks_(parts.ranks) {}
 
-    /// Of all ranks: `mine` joined with the others' by `join(T&, const T&)`.
-    template <typename T, typename Join>
-    T of_all(T mine, Join join) const {
+    /// Of all ranks: `mine` joined with the others' by `add(T&, const T&)`.
+    template <typename T, typename Add>
+    T of_all(T mine, Add add) const {
         if (!ranks_) return mine;
         ByteWriter bytes;
         bytes.put(mine);
         const std::vector<Bytes> all = ranks_->gather_for_all(bytes.take());
         T sum = ByteReader(all.front()).get<T>();
-        for (std::size_t rank = 1; rank < all.size(); ++rank) join(sum, ByteReader(all[rank]).get<T>());
+        for (std::size_t rank = 1; rank < all.size(); ++rank) add(sum, ByteReader(all[rank]).get<T>());
         return sum;
     }
     std::uint64_t sum(std::uint64_t mine) const {
