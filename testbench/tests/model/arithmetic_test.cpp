@@ -1,4 +1,4 @@
-// Words of fixed length: formats, sums of products and what is made of them, against integers.
+// Fixed-point words: formats, sums of products and the operations built on them, checked against integers.
 #include "model/numbers/arithmetic.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,8 @@ NumberSettings words(int bits, Rounding rounding = Rounding::nearest) {
     return settings;
 }
 
-/// A random word of a format: small ones, ends and powers of two more often than chance has it.
+/// A random word of a format. Small words, the two ends and powers of two are drawn more often than by
+/// chance.
 double random_word(const Format& f, Random& random) {
     const double steps = std::ldexp(1.0, f.bits() - 1);
     const int kind = random.whole(0, 5);
@@ -33,7 +34,7 @@ double random_word(const Format& f, Random& random) {
     return f.hold(std::floor(random.uniform(-steps, steps)) * f.step());
 }
 
-/// value / 2^scale by the format's rounding and saturation, in integers alone.
+/// value / 2^scale with the format's rounding and saturation, computed in integers alone.
 double by_integers(const Format& f, Integer value, int scale) {
     const int drop = scale - f.fraction_bits();
     Integer word = 0;
@@ -69,7 +70,8 @@ TEST(Format, RoundsToTheNearestTiesToEvenOrCutsOff) {
         const Format nearest(bits - fraction, fraction, Rounding::nearest);
         const Format cut(bits - fraction, fraction, Rounding::truncate);
         for (int i = 0; i < 100; ++i) {
-            // In quarters of the last bit, so that a quarter of them are ties; a few beyond the ends.
+            // Values are quarters of the last bit, so that a quarter of them are ties; a few lie beyond the
+            // ends.
             const double range = std::ldexp(1.1, std::min(bits - 1, 46));
             const double steps = std::floor(random.uniform(-range, range)) + 0.25 * random.whole(0, 3);
             const double value = std::ldexp(steps, -fraction);
@@ -109,8 +111,8 @@ TEST(Format, HasFrom2To48Bits) {
     }
 }
 
-/// Sums of products at every width: narrow ones run in doubles, wide ones in 128-bit integers; both must be
-/// what integers say, and at the width where one way passes into the other nothing changes.
+/// Sums of products at every width: narrow sums run in doubles, wide ones in 128-bit integers. Both must
+/// equal the integer result, also at the width where the method changes.
 TEST(Arithmetic, SumsOfProductsAreExactUntilTheirOneRounding) {
     for (const std::uint64_t seed : property::seeds(1000, 50)) {
         SCOPED_TRACE(property::rerun(seed));
@@ -144,7 +146,7 @@ TEST(Arithmetic, SumsOfProductsAreExactUntilTheirOneRounding) {
 }
 
 TEST(Arithmetic, NarrowAndWideSumsAgreeWhereBothApply) {
-    // The same words of 20 bits: narrow in a usual cube, wide in one so deep that doubles do not suffice.
+    // The same 20-bit words: narrow sums in a usual cube, wide ones in a cube too deep for doubles.
     const ArrayExtent deep{128, 128, 1e6, 1e3};
     for (const std::uint64_t seed : property::seeds(1500, 200)) {
         SCOPED_TRACE(property::rerun(seed));
@@ -175,7 +177,8 @@ TEST(Arithmetic, NormalisedVectorsOfAnyMagnitudeAreUnitButForTheirLastBits) {
             NumberSettings settings = words(bits);
             settings.operators.root = random.chance(0.5) ? Iteration::newton : Iteration::rounded;
             const Arithmetic arithmetic(settings, usual);
-            // One Newton step from lines that are off by 2^-12: 3/2 of its square is the limit of long words.
+            // One Newton step from table lines that are off by 2^-12: its error, 3/2 of that squared, limits
+            // long words.
             const double step_limit = settings.operators.root == Iteration::newton ? 1.5 * 0x1p-24 : 0;
             const double last_bit = arithmetic.formats().unit.step() + step_limit;
             for (int i = 0; i < 20; ++i) {

@@ -1,4 +1,4 @@
-// Loaded arrays as files: every bit comes back, and damage is found.
+// Files of loaded arrays: every bit is read back, and damage is found.
 #include "model/files/array_file.hpp"
 
 #include <cmath>
@@ -107,7 +107,7 @@ TEST(ArrayFile, DamageIsFoundWhereverItIs) {
     EXPECT_THROW(array_from(""), std::runtime_error);
 }
 
-/// An array with something of everything at rung `edge`: the cell and voxel with most edges come first.
+/// An array that uses every feature at rung `edge`. `cell` and `voxel` name the voxel with the most edges.
 struct Sample {
     CellScene scene;
     PictureSettings settings;
@@ -140,7 +140,8 @@ Sample sample() {
     return s;
 }
 
-/// What check_array says of the sample after a change that is written with a checksum of its own.
+/// The error message of check_array for the sample after `change`, written with a valid checksum; empty if
+/// none.
 std::string said_of(const std::function<void(Sample&, CellStore&, Voxel&)>& change) {
     Sample s = sample();
     CellStore& cell = s.array.cells[s.cell];
@@ -230,7 +231,7 @@ TEST(ArrayCheck, RefusesEveryFieldThatTracingCannotRelyOnThoughItsChecksumIsRigh
     }
 }
 
-/// Every setting that voxels depend on, changed alone.
+/// Changes each setting that voxels depend on, one at a time.
 TEST(ArrayFile, TheKeyTellsApartWhatVoxelsDependOn) {
     const CellScene scene = scene_of(3);
     const PictureSettings picture;

@@ -1,4 +1,4 @@
-// What a machine is told before it runs: the table of claims in cells/deadlock/deadlock.md, row by row.
+// Warnings before a run: the table of claims in cells/deadlock/deadlock.md, row by row.
 #include "model/machine/bound.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,8 @@ Bound bound_of_case(const Case& each, RunStage stage = RunStage::trace) {
     return bound_of(Context(scene, settings), each.machine);
 }
 
-/// The rows of the table, from its last to its first, as they are written there.
+/// The verdict that the table claims for a machine. Its rows are tested in the order of the table, last row
+/// first.
 May claim(const Case& each) {
     const MachineSettings& m = each.machine;
     const int generations = each.max_depth + (each.shadows ? 1 : 0);
@@ -88,7 +89,7 @@ TEST(Bound, NamesTheSmallestRayStoreThatMeetsItOrNone) {
             each.machine.ray_store = store;
             if (claim(each) == May::nothing) stores.insert(store);
         }
-        // With no generation that has to wait nothing needs a slot, and every store will do.
+        // Where no generation has to wait, no ray needs a slot, so every ray store is large enough.
         ASSERT_EQ(bound.ray_store_needed.has_value(), !stores.empty());
         if (!stores.empty()) {
             EXPECT_EQ(*bound.ray_store_needed, *stores.begin());
@@ -96,7 +97,7 @@ TEST(Bound, NamesTheSmallestRayStoreThatMeetsItOrNone) {
     }
 }
 
-/// The machine with the options that the bound names.
+/// The machine with the options that the bound recommends.
 MachineSettings changed(MachineSettings machine, const std::string& options) {
     std::istringstream words(options);
     for (std::string name, value; words >> name >> value;) {

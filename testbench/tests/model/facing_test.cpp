@@ -10,8 +10,9 @@ namespace {
 
 using property::Random;
 
-/// Pixels well inside must show the quad, those well outside must not: an outline in short words, and a voxel
-/// that is met wherever its cell is, may be off by a cell or so.
+/// Pixels well inside the quad must show it, and pixels well outside must not. Near its border, within `room`
+/// cells, either is allowed: an outline in short words is inexact, and the lower rungs hit a voxel anywhere
+/// in its cell.
 void expect_seen(const facing::Quad& quad, const Frame& frame, const Picture& picture, double room) {
     int inside = 0;
     for (int y = 0; y < frame.height; ++y) {
@@ -61,7 +62,7 @@ TEST(FacingQuads, LieHalfACellFromTheCubesFaces) {
         const facing::Quad quad(random);
         PictureSettings settings;
         settings.height = random.whole(1, 60);
-        settings.width = random.whole(settings.height, 60);  // sees all of the quad
+        settings.width = random.whole(settings.height, 60);  // wide enough to see all of the quad
         settings.viewer = random.chance(0.3) ? ViewerMode::infinity : ViewerMode::scene;
         const Frame frame = place_frame(quad.scene, settings);
         EXPECT_GE(frame.depth, 1);
@@ -72,7 +73,7 @@ TEST(FacingQuads, LieHalfACellFromTheCubesFaces) {
     }
 }
 
-/// Depths of random points of a primitive inside the field.
+/// Depth range of random points of a primitive that lie inside the field of view.
 Extent sampled(const Primitive& primitive, const ViewAxes& axes, const std::vector<HalfSpace>& field,
                Random& random) {
     Extent extent;
@@ -123,7 +124,7 @@ TEST(VisibleExtents, OfSpheresAndConesHoldWhatIsSeenAndLittleMore) {
             ++seen;
             EXPECT_LE(found.near, points.near + 1e-9);
             EXPECT_GE(found.far, points.far - 1e-9);
-            // Points fill the surface thinly where it is hardly seen.
+            // The random points are sparse where little of the surface is visible.
             EXPECT_GE(found.near, points.near - 0.3 * radius - 0.05);
             EXPECT_LE(found.far, points.far + 0.3 * radius + 0.05);
         }

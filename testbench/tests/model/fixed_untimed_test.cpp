@@ -1,4 +1,4 @@
-// Pictures in words: always numbers, always an end, and nearer to the exact one with every bit.
+// Pictures in fixed-point words: every value is finite, every run ends, and more bits come nearer to exact.
 #include <map>
 
 #include "model/machine/untimed.hpp"
@@ -22,7 +22,7 @@ NumberSettings any_words(Random& random, int word_bits) {
     return numbers;
 }
 
-/// Every intensity is a word of its format, and there is no light below nothing.
+/// Every intensity is a word of its format and not negative.
 void expect_intensities(const Picture& picture, const Format& word) {
     for (const Pixel& pixel : picture.pixels) {
         for (int channel = 0; channel < 3; ++channel) {
@@ -82,7 +82,8 @@ TEST(FixedPictures, SurviveScenesThatNoWordCanHold) {
     }
 }
 
-/// Features have 12 bits whatever the word: with those that even 8 bits hold, only the computing is compared.
+/// The scene with features that 8-bit words represent exactly, so that only the arithmetic differs. (Features
+/// have 12 bits, whatever the word length.)
 CellScene with_features_of_words(CellScene scene) {
     const Arithmetic least({Numbers::fixed, 8, Rounding::nearest, {}}, extent_of(scene.frame));
     for (Material& material : scene.objects) material = hold(material, least);
@@ -91,7 +92,7 @@ CellScene with_features_of_words(CellScene scene) {
 
 TEST(FixedPictures, ComeNearerToTheExactOneWithEveryFourBits) {
     for (const Rounding rounding : {Rounding::nearest, Rounding::truncate}) {
-        std::map<int, double> error;  // mean of what a pixel is off by
+        std::map<int, double> error;  // mean error of a pixel
         std::size_t pixels = 0;
         for (const std::uint64_t seed : property::seeds(1000, 30)) {
             Random random(seed);

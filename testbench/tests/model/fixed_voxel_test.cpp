@@ -1,4 +1,5 @@
-// Planes, edges and normals in words: what is rounded together stays together, along a row and in a voxel.
+// Planes, edges and normals in fixed-point words: what is rounded together stays consistent along a row and
+// within a voxel.
 #include "model/loading/loading.hpp"
 #include "model/tracing/intersect.hpp"
 #include "model/tracing/tracing.hpp"
@@ -16,7 +17,7 @@ dvec3 normal_towards(int drop, Random& random) {
     return glm::normalize(n);
 }
 
-/// How far a plane of words lies off a point of the true plane, along the dropped axis.
+/// Distance of a fixed-point plane from a point of the true plane, along the dropped axis.
 double off(const Plane& held, int drop, const dvec3& point) {
     return std::abs((held.c - glm::dot(held.n, point)) / held.n[drop]);
 }
@@ -38,13 +39,14 @@ TEST(HeldPlanes, PassThroughTheirAnchorWhereASeparateRoundingWouldMissItByManyBi
         EXPECT_EQ(std::abs(held.n[drop]), 1);
         for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(held.n[axis], slope.hold(held.n[axis]));
         EXPECT_EQ(held.c, offset.hold(held.c));
-        // The offset's own rounding is all that is left.
+        // Only the offset's own rounding is left.
         EXPECT_LE(off(held, drop, anchor), 0.51 * offset.step() + 1e-9);
-        // A cell away it is off by the slopes' rounding times a cell.
+        // One cell away, the error is the slopes' rounding times one cell.
         dvec3 beside = anchor + dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         beside[drop] += (plane.c - glm::dot(plane.n, beside)) / plane.n[drop];
         EXPECT_LE(off(held, drop, beside), 1.6 * offset.step() + 1e-9);
-        // Each number rounded for itself: the tilt's error, times the way from the origin.
+        // For comparison, each number rounded separately: the error of the slope, times the distance to the
+        // origin.
         const double scale = 1 / std::abs(plane.n[drop]);
         Plane apart;
         for (int axis = 0; axis < 3; ++axis) apart.n[axis] = slope.hold(plane.n[axis] * scale);
@@ -88,7 +90,7 @@ TEST(HeldEdges, StayOnTheirLineWhereASeparateRoundingWouldNot) {
         EdgeFunction edge{std::cos(turn), std::sin(turn), 0, 3};
         const dvec2 on{random.uniform(200, 1000), random.uniform(200, 1000)};
         edge.c = -(edge.a * on.x + edge.b * on.y);
-        const dvec2 anchor = on + random.uniform(-1, 1) * dvec2(edge.a, edge.b);  // near it
+        const dvec2 anchor = on + random.uniform(-1, 1) * dvec2(edge.a, edge.b);  // near the edge
         const EdgeFunction held = hold_edge(edge, anchor, slope, offset);
         EXPECT_EQ(held.piece, 3u);
         EXPECT_EQ(held.a, slope.hold(edge.a));
@@ -130,7 +132,7 @@ TEST(HeldFields, AreRightAtTheirAnchorWhereASeparateRoundingWouldNot) {
     }
 }
 
-/// A wide triangle in a row of cells, in loading words.
+/// A wide triangle over a row of cells, with a random word length.
 struct WideRow {
     explicit WideRow(std::uint64_t seed, int width)
         : random(seed), scene(shapes::empty_cube(width, 4, 64, 256)) {
@@ -168,7 +170,7 @@ TEST(HeldSpans, AfterAThousandCellsAreTheSpanCutThereBitForBit) {
                 while (span->x < span->last) advance(*span, arithmetic);
                 if (span->x - first < 1000) continue;
                 ++compared;
-                // The same functions at the last cell's corner, in extended precision and without steps.
+                // The same functions at the last cell's corner, evaluated directly in extended precision.
                 const long double x = span->x;
                 const auto& n = trapeze.plane.n;
                 const double offset =
@@ -198,15 +200,14 @@ TEST(HeldSpans, AfterAThousandCellsAreTheSpanCutThereBitForBit) {
     }
 }
 
-/// Every point of a polygon is inside of the voxel's edges, whichever of its pieces came first.
+/// Every point of a polygon lies inside the voxel's edges, whichever of its pieces came first.
 TEST(HeldVoxels, KeepTheirEdgesWhereMergedPiecesBeginNearer) {
     int merged = 0;
     for (const std::uint64_t seed : property::seeds(3000, 150)) {
         SCOPED_TRACE(property::rerun(seed));
         Random random(seed);
         CellScene scene = shapes::empty_cube(6, 6, 24, random.whole(200, 2000));
-        // Walls (z among the coordinates of their edges), concave, so that cells get pieces at several
-        // depths.
+        // Walls, so that their edges have z coordinates; concave, so that cells get pieces at several depths.
         const shapes::Axes axes = shapes::attitude(random, random.whole(1, 4));
         const auto outline =
             shapes::lift(shapes::star(random, random.whole(12, 40), random.uniform(0.8, 2.5)), axes,
@@ -233,7 +234,7 @@ TEST(HeldVoxels, KeepTheirEdgesWhereMergedPiecesBeginNearer) {
                     if (local.x < 0.01 || local.x > 0.99 || local.y < 0.01 || local.y > 0.99) continue;
                     const auto place = shapes::place_of(flat, project(p, voxel.drop));
                     if (place.distance < 1e-3) continue;
-                    // A short ray across the plane.
+                    // A short ray through the plane.
                     Ray ray;
                     ray.fresh = false;
                     const Formats& f = arithmetic.formats();
@@ -255,7 +256,7 @@ TEST(HeldVoxels, KeepTheirEdgesWhereMergedPiecesBeginNearer) {
     }
 }
 
-/// A triangle so many cells wide over which the normal turns by a right angle; the only one in its cell.
+/// A scene with one triangle, `width` cells wide, over which the normal turns by a right angle.
 CellScene turning(double width) {
     CellScene scene = shapes::empty_cube(4, 4, 8, 64);
     const dvec3 at(1.53, 1.47, 4.2);
@@ -264,7 +265,8 @@ CellScene turning(double width) {
     return scene;
 }
 
-/// The voxel's field of normals, and how far its direction is from the polygon's at the triangle's corners.
+/// The largest error of the voxel's normal at the triangle's corners; `field` gets the voxel's field of
+/// normals. Returns 1e300 if the cell does not have exactly one voxel.
 double turning_error(const CellScene& scene, int word_bits, NormalField& field) {
     PictureSettings settings = shapes::settings_for(scene, HitTest::edge, Numbers::fixed);
     settings.numbers.word_bits = word_bits;
@@ -288,7 +290,8 @@ TEST(HeldVoxels, OfPolygonsMuchSmallerThanACellKeepTheirNormalsAsNearAsTheirPlac
         NormalField field;
         for (const int bits : {20, 24, 28, 32}) {
             const double error = turning_error(scene, bits, field);
-            // The triangle's place in words, and what its normal turns over one last bit of it.
+            // The triangle's place is rounded to words, and the normal turns with every last bit of that
+            // place.
             EXPECT_LT(error, 16 * std::ldexp(1, 2 - bits) / width) << width << ", " << bits << " bits";
             EXPECT_NE(field.du, dvec3(0));
         }

@@ -1,4 +1,4 @@
-// The ladder's upper end is exact: `edge` finds what a search through all polygons finds.
+// The top rung of the ladder is exact: `edge` finds what a search through all polygons finds.
 #include <algorithm>
 #include <set>
 
@@ -90,7 +90,7 @@ TEST(Ladder, EdgeFindsWhatASearchThroughAllPolygonsFinds) {
                 size * dvec3(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
             auto outline =
                 shapes::lift(shapes::star(random, random.whole(3, 40), random.uniform(0.1, 7)), axes, centre);
-            // Cut to the cube: what sticks out is the exterior's.
+            // Clipped to the cube: the rest belongs to the exterior.
             outline = clip_to_box(outline, scene.frame.cube());
             if (outline.empty() || shapes::area_of(outline) < 1e-6) continue;
             hand_made::add_polygon(scene, 0, outline);
@@ -118,7 +118,7 @@ TEST(Ladder, EdgeIsExactOnConcavePolygonsAlongTheCellBorders) {
             centre[3 - first - second] = random.whole(1, 15) + (random.chance(0.5) ? 0.0 : 0.25);
             hand_made::add_polygon(scene, 0, shapes::lift(shapes::comb(teeth, size), axes, centre));
         }
-        // Two polygons in one plane are no surface.
+        // Two polygons in one plane do not make a surface.
         std::set<std::pair<int, double>> planes;
         std::vector<Polygon> kept;
         for (Polygon& polygon : scene.polygons) {

@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sub-folders of a room from the bottom up: each may include those before it. "." is the room itself. What
-/// is not listed is an error.
+/// Sub-folders of each top-level folder ("room"), lowest first: each may include those before it. "." is the
+/// room itself. A sub-folder that is not listed is an error.
 const std::map<std::string, std::vector<std::string>> sub_folders = {
     {"model",
      {"settings", "numbers", "geometry", "shading", "loading", "picture", "files", "tracing", "machine",
@@ -23,7 +23,7 @@ const std::map<std::string, std::vector<std::string>> sub_folders = {
     {"scenes", {"."}},
 };
 
-/// What files of each room may include besides themselves.
+/// The other rooms that files of each room may include.
 const std::map<std::string, std::vector<std::string>> rooms_below = {
     {"model", {}},
     {"cells", {"model"}},
@@ -35,7 +35,7 @@ std::string first_of(const fs::path& path) {
     return path.begin() == path.end() ? "." : path.begin()->string();
 }
 
-/// The place of a file of a room in the list of its sub-folders, or -1.
+/// Position of a file's sub-folder in the list of its room, or -1.
 int place_of(const std::string& room, const fs::path& file_in_room) {
     const std::string folder =
         file_in_room.has_parent_path() ? first_of(file_in_room.parent_path()) : std::string(".");
@@ -44,7 +44,7 @@ int place_of(const std::string& room, const fs::path& file_in_room) {
     return at == order.end() ? -1 : int(at - order.begin());
 }
 
-/// "file: what it includes against the order", a line each.
+/// The includes that break the order, one line each: "file includes target".
 std::string offenders(const fs::path& top, const std::string& room) {
     std::string found;
     for (const auto& entry : fs::recursive_directory_iterator(top / room)) {
@@ -88,7 +88,7 @@ TEST(Layering, NothingInModelOrScenesIncludesSystemC) {
     }
 }
 
-/// A tree of two files, of which one includes the other.
+/// The offenders in a tree of one file that includes another.
 std::string found_when(const std::string& file, const std::string& includes) {
     const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
     const fs::path top = fs::path(::testing::TempDir()) / ("raycell_" + name);

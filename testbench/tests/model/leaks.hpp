@@ -1,4 +1,4 @@
-// Rays shot at closed surfaces: how many pass through.
+// Shoots rays at closed surfaces and counts how many pass through.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,11 +17,11 @@ using shapes::Closed;
 struct Shot {
     dvec3 origin;
     dvec3 direction;
-    double until;  ///< where it is inside the surface: it must have hit something by then
+    double until;  ///< distance at which the ray is inside the surface: it must hit before
 };
 
-/// Half of the rays start inside and must meet the surface anywhere; half come from the cube's border, where
-/// there is a way, and must meet it before they reach the point inside.
+/// Half of the rays start inside and must hit the surface at any distance. The others, if `from_outside` is
+/// set, start at the cube's border and must hit it before they reach a point inside.
 inline Shot shoot(const Closed& closed, bool from_outside, Random& random) {
     const dvec3 inside = closed.inside(random);
     const dvec3 direction = shapes::sloped_direction(random);
@@ -49,7 +49,7 @@ inline std::string describe(const Shot& shot, const std::optional<walker::Found>
     return text.str();
 }
 
-/// Shoots what `next` draws; counts the rays that meet nothing in time.
+/// Shoots rays drawn by `next` and counts those that do not hit in time.
 inline Score count_leaks(const Closed& closed, const PictureSettings& settings, int rays,
                          const std::function<Shot()>& next) {
     const Context context(closed.scene, settings);
@@ -64,7 +64,7 @@ inline Score count_leaks(const Closed& closed, const PictureSettings& settings, 
         const Ray ray = walker::ray_at(context, shot.origin, shot.direction, x, y);
         const auto found = walker::walk(cells, context, ray, x, y);
         ++score.rays;
-        // Directions of words are not quite unit, and every hop rounds its way.
+        // In fixed arithmetic, directions are not exactly unit vectors, and every hop rounds its distance.
         const double slack = arithmetic.exact() ? 1e-6 : (64 + 4 * shot.until) * last_bit;
         if (found && found->t <= shot.until + slack) continue;
         if (score.leaks++ == 0) score.first = describe(shot, found);
@@ -72,14 +72,15 @@ inline Score count_leaks(const Closed& closed, const PictureSettings& settings, 
     return score;
 }
 
-/// Rays anyhow; from outside only where `from_outside` allows them.
+/// Rays in random directions; from outside only if `from_outside` is set and the surface has an outside.
 inline Score shoot_at(const Closed& closed, const PictureSettings& settings, int rays, Random& random,
                       bool from_outside = true) {
     from_outside = from_outside && closed.has_outside();
     return count_leaks(closed, settings, rays, [&] { return shoot(closed, from_outside, random); });
 }
 
-/// Rays from inside at edges and corners, as exactly as their words allow; the hit may lie so far beyond.
+/// Rays from inside at edges and corners, as exactly as their words allow. They must hit at most `beyond`
+/// cells behind the target.
 inline Score shoot_at_edges(const Closed& closed, const PictureSettings& settings, int rays, Random& random,
                             double beyond = 1e300) {
     const std::vector<Polygon>& polygons = closed.scene.polygons;
@@ -93,7 +94,7 @@ inline Score shoot_at_edges(const Closed& closed, const PictureSettings& setting
     });
 }
 
-/// A point of a polygon that is convex.
+/// A random point of a convex polygon.
 inline dvec3 point_of(const Polygon& polygon, Random& random) {
     dvec3 sum{0, 0, 0};
     double weights = 0;
@@ -105,7 +106,7 @@ inline dvec3 point_of(const Polygon& polygon, Random& random) {
     return sum / weights;
 }
 
-/// Rays from inside at faces, where they pass from one column or row of cells to the next.
+/// Rays from inside at points where a face passes from one column or row of cells to the next.
 inline Score shoot_at_borders(const Closed& closed, const PictureSettings& settings, int rays,
                               Random& random) {
     const std::vector<Polygon>& polygons = closed.scene.polygons;
@@ -133,7 +134,8 @@ using Make = std::function<Closed(Random&)>;
 using Variants = std::function<std::vector<PictureSettings>(const CellScene&)>;
 using Shoot = std::function<Score(const Closed&, const PictureSettings&, Random&)>;
 
-/// No ray passes through any of so many random surfaces, each loaded with each of the settings.
+/// Expects that no ray passes through any of `surfaces` random surfaces, each loaded with each of the
+/// settings.
 inline void expect_no_leak(const Make& make, std::uint64_t first_seed, int surfaces, const Variants& variants,
                            const Shoot& shoot) {
     for (const std::uint64_t seed : property::seeds(first_seed, surfaces)) {
@@ -149,8 +151,8 @@ inline void expect_no_leak(const Make& make, std::uint64_t first_seed, int surfa
     }
 }
 
-/// Follows a ray inside a closed room of mirrors from hit to hit, sent as the machine sends its reflected
-/// rays. Returns its bounces; fails where it gets out.
+/// Follows a ray inside a closed room of mirrors, reflecting it at each hit as the machine does. Returns the
+/// number of bounces, at most `most`; fails if the ray leaves the room.
 inline int count_bounces(const std::vector<CellStore>& cells, const Context& context, Ray ray, int x, int y,
                          int most) {
     for (int bounce = 0; bounce < most; ++bounce) {
@@ -172,7 +174,7 @@ inline int count_bounces(const std::vector<CellStore>& cells, const Context& con
     return most;
 }
 
-/// 200 rays, 10 bounces each, in each of 12 random rooms at rung `edge`.
+/// Sends 200 rays with 10 bounces each through each of 12 random rooms at rung `edge`.
 inline void expect_no_reflected_ray_leaves_a_room(Numbers arithmetic) {
     int bounces = 0;
     for (const std::uint64_t seed : property::seeds(8000, 12)) {
@@ -193,7 +195,7 @@ inline void expect_no_reflected_ray_leaves_a_room(Numbers arithmetic) {
             bounces += count_bounces(cells, context, ray, x, y, 10);
         }
     }
-    if (property::seeds(0, 2).size() > 1) {  // not where one seed is run again
+    if (property::seeds(0, 2).size() > 1) {  // not when a single seed is run again
         EXPECT_GT(bounces, 1900);
     }
 }

@@ -1,4 +1,4 @@
-// What words cost, by cause.
+// Losses by fixed-point words, by cause.
 #include "model/machine/losses.hpp"
 
 #include "model/loading/loading.hpp"
@@ -20,7 +20,7 @@ TEST(Losses, CountWhatOfASceneIsBeyondItsFormat) {
     Material dense;
     dense.transmit = 0.5;
     dense.ior = 9;
-    Material opaque = dense;  // nothing is bent where nothing is transmitted
+    Material opaque = dense;  // the index does not matter where nothing is transmitted
     opaque.transmit = 0;
     scene.objects = {Material(), bright, dense, opaque};
     scene.sources = {{{0, 0, 0}, dvec3(1)}, {{0, 0, 0}, dvec3(30)}};
@@ -51,7 +51,7 @@ TEST(Losses, NamePolygonsWithASingleNormalJustWhereTheVoxelHasOne) {
         const Context context(scene, settings);
         const auto cells = load_array(scene, settings, context.arithmetic);
         const CellStore& store = cells[1 * 4 + 1];
-        if (store.voxels.empty()) continue;  // between two last bits of its place
+        if (store.voxels.empty()) continue;  // the triangle's place is between two last bits
         const NormalField& field = store.voxels[0].normal;
         const bool single = field.du == dvec3(0) && field.dv == dvec3(0);
         EXPECT_EQ(losses_of(context).single_normals, single ? 1u : 0u) << width;

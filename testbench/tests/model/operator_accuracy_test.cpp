@@ -1,4 +1,4 @@
-// The operators' errors over all arguments, against double precision.
+// Errors of the operators over all arguments, against double precision.
 #include <gtest/gtest.h>
 
 #include "operator_reference.hpp"
@@ -139,7 +139,7 @@ TEST(Power, OfTablesGetsTwiceAsAccurateWithTwiceTheEntriesUntilTheLogarithmsLast
         EXPECT_GT(now, 0.4 * before) << entries << " entries";
         before = now;
     }
-    // A last bit of the logarithm, half from the table's entries and half from the line, 1024 times.
+    // One last bit of the logarithm (half from the table's entries, half from the line) times 1024.
     const double last_bit = std::ldexp(1, -19) * 1024 * std::log(2.0);
     const double least = power_errors(of(PowerMethod::tables, 4096, 20), 20, 1024).largest;
     EXPECT_LT(least, last_bit);
@@ -153,7 +153,7 @@ TEST(Power, OfSchlickIsWithinAFifth) {
     EXPECT_NEAR(of(PowerMethod::schlick, 32, 20).power(0.5, 2), 0.5 / 1.5, 4e-6);
 }
 
-/// Largest distance of a chord over `width` from a curve with the second derivative `bend`.
+/// Largest distance between a chord over `width` and a curve whose second derivative is `bend`.
 double chord_gap(double width, double bend) { return width * width / 8 * bend; }
 
 TEST(Operators, ErrorsStayBelowTheChordsGapOrItsSquareAndTheRoundings) {
@@ -163,17 +163,17 @@ TEST(Operators, ErrorsStayBelowTheChordsGapOrItsSquareAndTheRoundings) {
             SCOPED_TRACE(std::to_string(entries) + " entries, words of " + std::to_string(word_bits) +
                          " bits");
             const double gap = chord_gap(1.0 / entries, 2);
-            const double root_gap = chord_gap(2.0 / entries, 0.75);  // over [1, 2), the larger
-            // A rounded entry, a rounded result.
+            const double root_gap = chord_gap(2.0 / entries, 0.75);  // over [1, 2), where it is larger
+            // The rounding of an entry and of the result.
             const Operators table = of(Iteration::table, entries, word_bits);
             EXPECT_LE(reciprocal_errors(table, word_bits).largest, gap + step);
             EXPECT_LE(root_errors(table, word_bits).largest, root_gap + step);
-            if (word_bits == 32 && entries <= 256) {  // the gap alone is to be seen
+            if (word_bits == 32 && entries <= 256) {  // the gap alone must show
                 EXPECT_GE(reciprocal_errors(table, word_bits).largest, gap * (1 - 4.0 / entries) - step);
                 EXPECT_GE(root_errors(table, word_bits).largest, root_gap * (1 - 3.0 / entries) - step);
             }
-            // Error e before the step: e^2 (of 1/x, m <= 2) and 1.5*e^2 (relative) after it; the correction's
-            // rounding weighs up to a half, that of m*r up to a quarter of a last bit.
+            // An error e before the Newton step becomes e^2 (of 1/x, m <= 2) or 1.5*e^2 (relative). The
+            // rounding of the correction adds up to a half, that of m*r up to a quarter of a last bit.
             const Operators newton = of(Iteration::newton, entries, word_bits);
             const double before = gap + step;
             const double root_before = root_gap + step;
@@ -202,7 +202,7 @@ TEST(Operators, TruncatedResultsAreUpToThreeLastBitsLow) {
             least = std::min(least, error);
             most = std::max(most, error);
         });
-        EXPECT_LE(most, step);  // a product m*r that was cut makes the correction larger
+        EXPECT_LE(most, step);  // a truncated product m*r makes the correction larger
         EXPECT_GT(least, -3 * step);
     }
 }

@@ -1,4 +1,4 @@
-// What the cell's operators are to compute, a second time: slow, and in whole numbers.
+// Reference for the cell's operators: slow, in whole numbers.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ inline OperatorSettings same(Iteration method, int entries) {
     return settings;
 }
 
-/// Operators of these settings, the rest by default.
+/// Operators with these settings and defaults for the rest.
 inline Operators of(Iteration method, int entries, int word_bits, Rounding rounding = Rounding::nearest) {
     return Operators(same(method, entries), word_bits, rounding);
 }
@@ -49,8 +49,8 @@ inline std::string label(const OperatorSettings& s, int word_bits, Rounding roun
            std::to_string(s.power_table);
 }
 
-/// Calls `visit` with the words of `fraction_bits` from `first` to `last`: with all mantissas of 20 bits,
-/// with about as many of longer ones, evenly spread, and both ends.
+/// Calls `visit` with words of `fraction_bits` from `first` to `last`, both included: with every mantissa of
+/// up to 20 bits, and with about as many of a longer one, evenly spread.
 template <class Visit>
 void for_words(double first, double last, int fraction_bits, Visit visit) {
     const auto from = std::int64_t(std::ldexp(first, fraction_bits));
@@ -61,8 +61,8 @@ void for_words(double first, double last, int fraction_bits, Visit visit) {
     visit(last);
 }
 
-/// What the operators are to compute, said once more in fractions of whole numbers: no shifts, no masks,
-/// every rounding a division.
+/// The results that the operators must give, written in fractions of whole numbers: no shifts, no masks, and
+/// every rounding is a division.
 class Reference {
   public:
     Reference(const OperatorSettings& settings, int word_bits, Rounding rounding)
@@ -114,7 +114,7 @@ class Reference {
         return nearest_ ? nearest(numerator, denominator) : numerator / denominator;
     }
 
-    /// x = mantissa * base^k of a mantissa from 1 to `base`, a word, exponent = log2(base) * k.
+    /// Splits x into mantissa * base^k. The mantissa is a word from 1 to `base`; exponent = log2(base) * k.
     Argument argument(double x, double base) const {
         int exponent = 0;
         const int octaves = base == 4 ? 2 : 1;
@@ -126,7 +126,7 @@ class Reference {
         return {Integer(word), exponent};
     }
 
-    /// The same of numerator / unit as a binary mantissa, in whole numbers.
+    /// The same for numerator / unit with a binary mantissa, in whole numbers.
     Argument mantissa_of(Integer numerator, Integer unit) const {
         int exponent = 0;
         while (numerator < unit) numerator *= 2, --exponent;
@@ -151,7 +151,7 @@ class Reference {
         return rounded(r * rounded(2 * one_ * one_ - m * r, one_), one_);
     }
 
-    /// 1/sqrt digit by digit, one digit more than a word has.
+    /// 1/sqrt digit by digit, with one digit more than a word has.
     Integer root_of(Integer m) const {
         const auto digits = [&](Integer x) {
             Integer root = 0;
@@ -163,7 +163,7 @@ class Reference {
         };
         if (settings_.root == Iteration::rounded) return (digits(m) + (nearest_ ? 1 : 0)) / 2;
         const auto exact = [&](Integer x) { return (digits(x) + 1) / 2; };
-        // Half of the lines over [1, 2), half over [2, 4); 1 is one_ / 2 here.
+        // Half of the table's lines cover [1, 2), half [2, 4). Here 1 is represented by one_ / 2.
         const Integer first = m < one_ ? one_ / 2 : one_;
         const Integer lines = std::min(Integer(sizes_.root / 2), first);
         const Integer width = first / lines;
@@ -186,7 +186,7 @@ class Reference {
         };
         const Integer logarithm = base.exponent * one_ + line(base.mantissa - one_, one_,
                                                               [](long double x) { return std::log2(1 + x); });
-        // Rounded as the magnitude that it is in the cell.
+        // Rounded as a magnitude, as in the cell.
         const Integer product = -rounded(-std::max(logarithm, -32 * one_) * scaled, per_one_);
         Integer octave = 0;
         while (octave * one_ > product && octave > -200) --octave;
@@ -200,7 +200,7 @@ class Reference {
         const auto b = Integer(whole(base * double(one_)));
         const Integer divisor = scaled * (one_ - b) + 256 * b;
         const Argument a = mantissa_of(divisor, 256 * one_);
-        // 2^(exponent + 8) is whole: the divisor is 1/256 at least.
+        // 2^(exponent + 8) is whole because the divisor is at least 1/256.
         return std::min(rounded(256 * b * reciprocal_of(a.mantissa), 2 * one_ * two_to(a.exponent + 8)),
                         one_ / 2);
     }
@@ -209,7 +209,7 @@ class Reference {
     TableSizes sizes_;
     int f_;
     Integer one_;
-    Integer per_one_;  ///< parts of one that an exponent is held to
+    Integer per_one_;  ///< resolution of an exponent, in parts of one
     bool nearest_;
 };
 

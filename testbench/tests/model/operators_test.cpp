@@ -1,4 +1,4 @@
-// The cell's operators against a slow reference of whole numbers, and what holds for all arguments.
+// The cell's operators against a slow reference in whole numbers, and properties over all arguments.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ TEST(Operators, EqualTheReferenceForArgumentsOfAnyMagnitudeAndEveryWordLength) {
         const Operators operators(settings, word_bits, rounding);
         const Reference reference(settings, word_bits, rounding);
         for (int i = 0; i < 300; ++i) {
-            // As a rule no word: the argument's own rounding is tested with it.
+            // Usually not a word, so that the rounding of the argument is tested too.
             double x = std::ldexp(random.uniform(1, 2), random.whole(-40, 40));
             if (random.chance(0.1)) x = std::ldexp(2 - std::ldexp(random.uniform(0, 4), -word_bits), 3);
             if (random.chance(0.1)) {  // a tie
@@ -92,7 +92,7 @@ TEST(Operators, PowersEqualTheReferenceForEveryWordLength) {
 }
 
 TEST(Operators, RoundedRootIsRightWhereDoublePrecisionIsNot) {
-    // 32-bit mantissas whose roots are so near to a digit's end that 2^32 / std::sqrt(m) is beyond it.
+    // 32-bit mantissas whose roots lie so near to the end of a digit that 2^32 / std::sqrt(m) is beyond it.
     for (const std::uint64_t m :
          {4294574095u, 4294180924u, 4291094545u, 4280767953u, 1382920971u, 1299971749u}) {
         const double x = std::ldexp(double(m), -30);
@@ -104,7 +104,7 @@ TEST(Operators, RoundedRootIsRightWhereDoublePrecisionIsNot) {
     }
 }
 
-/// base = `word` / 2^(word_bits - 1), exponent = `power` / 256.
+/// Arguments of a power: base = `word` / 2^(word_bits - 1), exponent = `power` / 256.
 struct LongDivisor {
     int word_bits;
     Rounding rounding;
@@ -113,7 +113,8 @@ struct LongDivisor {
 };
 
 TEST(Power, OfSchlickIsRightWhereTheDivisorHasMoreBitsThanADouble) {
-    // The divisor n - n*b + b lies beside a tie or just below a word, and rounds the other way as a double.
+    // The divisor n - n*b + b lies beside a tie or just below a word. Computed in doubles, it rounds the
+    // other way.
     for (const LongDivisor& a : std::vector<LongDivisor>{{28, Rounding::truncate, 40356247, 127354663},
                                                          {29, Rounding::truncate, 116945501, 63304437},
                                                          {29, Rounding::nearest, 158290339, 126774027},
@@ -163,7 +164,7 @@ TEST(Operators, ArgumentsThatRoundToTheNextPowerCountAsIt) {
         EXPECT_EQ(truncate.inverse_root(4 - 0x1p-50), truncate.inverse_root(4 - 0x1p-18));
         EXPECT_EQ(truncate.reciprocal(1 + 0x1p-20), 1);
     }
-    // 2 to the half lies between: no power of four.
+    // 2 is not a power of four.
     EXPECT_NEAR(of(Iteration::rounded, 64, 20).inverse_root(2), std::sqrt(0.5), 0x1p-20);
 }
 
@@ -269,7 +270,7 @@ TEST(Power, OfPowersOfTwoIsExact) {
             for (int e = 1; e <= word_bits - 2; ++e) {
                 EXPECT_EQ(operators.power(0.5, e), std::ldexp(1, -e)) << e;
                 EXPECT_EQ(operators.power(std::ldexp(1, -e), 1), std::ldexp(1, -e)) << e;
-                if (e > 15) continue;  // beyond the least base
+                if (e > 15) continue;  // the base would be less than the least base
                 EXPECT_EQ(operators.power(std::ldexp(1, -2 * e), 0.5), std::ldexp(1, -e)) << e;
             }
         }
@@ -360,7 +361,7 @@ TEST(Operators, TreatBothSignsAlike) {
 
 TEST(Operators, ResultsAreWordsAtTheEndsOfTheirRange) {
     for (int word_bits = 8; word_bits <= 32; ++word_bits) {
-        const double smallest = std::ldexp(1, 2 - word_bits);  // of Q2.(W - 2)
+        const double smallest = std::ldexp(1, 2 - word_bits);  // format Q2.(W - 2)
         const double largest = 2 - smallest;
         for (const Iteration method : iterations) {
             const Operators operators = of(method, 64, word_bits);

@@ -1,4 +1,4 @@
-// Many convex pieces of one polygon in one cell.
+// A polygon with many convex pieces in one cell.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace raycell {
 namespace {
 
-/// Even-odd by counting crossings, apart from the model's own code.
+/// Even-odd rule by counting crossings, independent of the model's code.
 bool inside(const std::vector<dvec3>& outline, double x, double y) {
     bool in = false;
     for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++) {

@@ -54,7 +54,7 @@ TEST(Placement, CentresOfTheFirstAndLastRowSpanTheAngleExactly) {
         EXPECT_NEAR(std::acos(std::clamp(glm::dot(first, last), -1.0, 1.0)) * 180 / hand_made::pi,
                     scene.view->angle, 1e-6);
         EXPECT_LT(first.y, last.y);  // row 0 on top
-        // The view axis goes through the middle, straight back.
+        // The view axis goes straight through the middle.
         const dvec3 middle = frame.primary_ray(x, 0.5 * settings.height).direction;
         EXPECT_LT(glm::length(middle - dvec3(0, 0, 1)), 1e-12);
     }
@@ -169,7 +169,7 @@ TEST(Placement, ViewerAtInfinitySeesAlongZWithTheScaleOfItsTarget) {
         const dvec3 target = frame.to_cells(scene.view->at);
         EXPECT_NEAR(target.x, 0.5 * settings.width, 1e-6);
         EXPECT_NEAR(target.y, 0.5 * settings.height, 1e-6);
-        // The whole scene that is in front of the array is in its depth.
+        // The depth of the array holds all of the scene that is in front of it.
         const CellScene placed = place_scene(scene, frame, settings);
         for (const Polygon& polygon : placed.polygons) {
             for (const dvec3& p : polygon.vertices) {

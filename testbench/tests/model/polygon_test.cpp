@@ -42,7 +42,7 @@ TEST(Polygon, PlaneHoldsItsVerticesAlsoSeenEdgeOn) {
         EXPECT_GT(glm::dot(polygon.plane.n, axes.w), 0.999999);
         for (const dvec3& v : polygon.vertices)
             EXPECT_NEAR(glm::dot(polygon.plane.n, v), polygon.plane.c, 1e-11);
-        // Projected along the dominant axis at least 1/sqrt(3) of the area is left.
+        // The projection along the dominant axis keeps at least 1/sqrt(3) of the area.
         EXPECT_GE(std::abs(polygon.plane.n[polygon.drop]), 0.577);
     }
 }
@@ -75,7 +75,7 @@ TEST(Clipping, NeighboursGetTheSameCutPointOnTheirSharedEdgeBitForBit) {
         const dvec3 c = hand_made::random_point(random.engine(), -30, 30);
         const dvec3 d = hand_made::random_point(random.engine(), -30, 30);
         const Box box{dvec3(-10), dvec3(10)};
-        // The ends of the shared edge that is left: on the line through a and b, in neither order.
+        // The ends of what is left of the shared edge: points on the line through a and b, sorted.
         const auto on_edge = [&](const std::vector<dvec3>& outline) {
             std::vector<dvec3> points;
             for (const dvec3& p : outline) {
@@ -144,7 +144,7 @@ TEST(Triangulation, AreasAddUpAndNoTriangleTurnsTheOtherWay) {
     }
 }
 
-/// Ear clipping the plain way: every corner in turn, each against all others.
+/// Plain ear clipping: tests every corner in turn against all others.
 std::vector<std::array<std::size_t, 3>> plain_triangles(const std::vector<dvec2>& p) {
     const auto area = [&](std::size_t a, std::size_t b, std::size_t c) {
         const dvec2 q = p[b] - p[a];
@@ -184,7 +184,7 @@ TEST(Triangulation, TakesTheFirstEarOfThePlainAlgorithmEveryTime) {
         Random random(seed);
         std::vector<dvec2> outline = random.chance(0.5) ? shapes::star(random, random.whole(3, 80), 5)
                                                         : shapes::comb(random.whole(2, 20), 7.5);
-        if (random.chance(0.4)) {  // anyhow: crosses and repeats itself
+        if (random.chance(0.4)) {  // arbitrary: crosses and repeats itself
             for (dvec2& p : outline) p = glm::round(dvec2(random.uniform(-4, 4), random.uniform(-4, 4)));
         }
         ASSERT_EQ(triangulate(shapes::lift(outline, {}, {0, 0, 0}), {0, 0, 1}), plain_triangles(outline));

@@ -1,4 +1,4 @@
-// The walk from cell to cell, and what the messages of the links are made of.
+// The walk from cell to cell, and the fields of the messages on the links.
 #include "model/tracing/ray.hpp"
 
 #include <set>
@@ -60,7 +60,7 @@ TEST(Walk, VisitsEveryCellThatTheRayIsInAndNoOther) {
             EXPECT_TRUE(in_walk.count({expected[i].x, expected[i].y}))
                 << expected[i].x << ", " << expected[i].y;
         }
-        // A walk only adds a cell where the ray passes a corner: one step off the brute force.
+        // The walk may only add a cell where the ray passes a corner: one step away from the brute force.
         std::size_t next = 0;
         for (std::size_t i = 0; i < visited.size() && next < expected.size(); ++i) {
             if (visited[i].x == expected[next].x && visited[i].y == expected[next].y) {
@@ -160,7 +160,7 @@ TEST(Messages, HaveTheBitsOfTheirFields) {
     const int address = 7 + 6 + 3 + 1 + 6;      // home, slot, child
     const int place = 20 + 20 + (8 + 20);       // z has 8 bits more, for depths to 256
     const int way = 3 * 20 + 2 * (20 + 6);      // direction; reciprocals with exponents
-    const int weight = 20;                      // or the reach
+    const int weight = 20;                      // or the distance limit
     const int word = 36;                        // of loading
     const int plane = 3 * word + 2 + 1 + word;  // slopes and offset, axis and sign; slack
     const int edges = 4 * 3 * word + 3;         // up to four, and how many
@@ -176,16 +176,17 @@ TEST(Messages, HaveTheBitsOfTheirFields) {
     EXPECT_EQ(bits.features, 3 + 6 * 12 + 12 + 16 + 1);
     EXPECT_EQ(bits.viewer, 3 + 3 * 32 + 6 + 6);
     EXPECT_EQ(bits.setup(2) - bits.setup(0), 2 * (3 * 32 + 6 + 3 * 20));
-    // Each grows with the word: a ray holds three words of place, three of direction, two reciprocals,
-    // weight.
+    // Each grows with the word length. A ray holds three words of place, three of direction, two of
+    // reciprocals and one of weight.
     const MessageBits wider = message_bits(picture, machine, Formats(24, Rounding::nearest, extent));
     EXPECT_EQ(wider.ray - bits.ray, 9 * 4);
     EXPECT_EQ(wider.verdict, bits.verdict);
     EXPECT_EQ(wider.span - bits.span, (5 + 4 + 9 + 12) * 4);
-    // Verdicts on voxels name one of 1024 instead of a slot.
+    // Verdicts on voxels name one of 1024 voxels instead of a slot.
     picture.shadows = Shadows::memo;
     EXPECT_EQ(message_bits(picture, machine, formats).verdict, bits.verdict + 10 - 4);
-    // Gouraud: an intensity and its increment; corners have one each, as increments again, of a side.
+    // Gouraud: a span carries an intensity and its increment; the corners carry an intensity each, or
+    // increments along a side.
     picture.display = Display::gouraud;
     EXPECT_EQ(message_bits(picture, machine, formats).span, bits.span + 6 * word);
 }
@@ -208,7 +209,7 @@ TEST(Messages, AnAnswerGoesWhereItsRayCameFrom) {
     EXPECT_EQ(answer.kind, Answer::Kind::postponed);
 }
 
-/// Ray classes that rays put on a link in this direction can have, found by sending rays over it.
+/// The ray classes that can occur on a link in this direction, found by sending random rays over it.
 std::set<int> classes_seen(Networks networks, Side side) {
     const BufferClasses classes = buffer_classes(networks);
     std::set<int> seen;
@@ -248,7 +249,7 @@ TEST(BufferClasses, ARayWithoutXGoesWithThePositiveHalf) {
     set_direction(ray, {0, -1, 0}, exact);
     EXPECT_EQ(buffer_classes(Networks::half).ray(ray), 0);
     EXPECT_EQ(buffer_classes(Networks::quadrant).ray(ray), 2);
-    set_direction(ray, {-1e-13, 1, 0}, exact);  // too small to cross: no western ray
+    set_direction(ray, {-1e-13, 1, 0}, exact);  // too small to cross a cell: does not count as western
     EXPECT_EQ(buffer_classes(Networks::half).ray(ray), 0);
 }
 

@@ -1,4 +1,4 @@
-// Whitted's model: directions and sums against formulas written another way.
+// Whitted's model: directions and sums, checked against formulas in another form.
 #include "model/shading/shading.hpp"
 
 #include "shapes.hpp"
@@ -35,7 +35,7 @@ TEST(Shading, MirrorsByTheLawOfReflection) {
         EXPECT_NEAR(glm::length(out), 1, 1e-12);
         EXPECT_NEAR(glm::dot(out, point.normal), -glm::dot(way, point.normal), 1e-12);
         EXPECT_LT(glm::length(glm::cross(out - way, point.normal)),
-                  1e-12);  // only the normal's share changes
+                  1e-12);  // only the component along the normal changes
     }
 }
 
@@ -61,7 +61,7 @@ TEST(Shading, RefractsBySnellsLawBothWaysOrReflectsTotally) {
         EXPECT_NEAR(glm::length(glm::cross(out, point.normal)), sine_out, 1e-9);
         EXPECT_LE(glm::dot(out, point.normal), 1e-12);                       // on the other side
         EXPECT_NEAR(glm::dot(glm::cross(way, point.normal), out), 0, 1e-9);  // in the plane of incidence
-        if (std::abs(sine_out) < 0.999) {                                    // the way back is the same way
+        if (std::abs(sine_out) < 0.999) {                                    // the reverse path is the same
             const ShadePoint back = shade_point(dvec3(0), -out, normal, normal);
             dvec3 again;
             ASSERT_TRUE(refract_direction(back, ior, again));
@@ -117,7 +117,7 @@ TEST(Shading, BothSidesOfASurfaceLookTheSame) {
     const ShadePoint front = shade_point(dvec3(0), way, {0, 0, -1}, {0, 0, -1});
     const ShadePoint back = shade_point(dvec3(0), way, {0, 0, 1}, {0, 0, 1});
     EXPECT_EQ(local_intensity(front, m, &source, 1, 1), local_intensity(back, m, &source, 1, 1));
-    // From behind, it is not lit.
+    // A source behind the surface does not light it.
     const ShadePoint other = shade_point(dvec3(0), -way, {0, 0, 1}, {0, 0, 1});
     EXPECT_EQ(local_intensity(other, m, &source, 1, 1), 0.1 * m.diffuse * m.colour);
 }

@@ -15,7 +15,7 @@ namespace raycell::shapes {
 using hand_made::pi;
 using property::Random;
 
-/// A frame of axes turned at random: columns are unit and at right angles.
+/// A frame of axes turned at random: unit vectors at right angles to each other.
 struct Axes {
     dvec3 u{1, 0, 0};
     dvec3 v{0, 1, 0};
@@ -29,7 +29,8 @@ inline Axes turned(Random& random) {
     axes.v = glm::cross(axes.w, axes.u);
     return axes;
 }
-/// Axes whose plane (u, v) faces the viewer, is seen edge-on upright, edge-on along a row, or lies anyhow.
+/// Axes of one of six kinds, 0 to 5. The plane (u, v) faces the viewer (0), is seen edge-on (1 to 3) or
+/// nearly edge-on (4), or is turned at random (5).
 inline Axes attitude(Random& random, int kind) {
     const double turn = random.uniform(0, 2 * pi);
     const double c = std::cos(turn);
@@ -53,7 +54,7 @@ inline Axes attitude(Random& random, int kind) {
     }
 }
 
-/// A simple outline in the plane, star-shaped round the origin, concave: radii jump from vertex to vertex.
+/// A simple, concave outline in the plane, star-shaped round the origin: radii jump from vertex to vertex.
 inline std::vector<dvec2> star(Random& random, int corners, double size) {
     std::vector<dvec2> outline;
     for (int i = 0; i < corners; ++i) {
@@ -62,7 +63,7 @@ inline std::vector<dvec2> star(Random& random, int corners, double size) {
     }
     return outline;
 }
-/// A comb: concave with many parallel teeth, all corners on a grid, so that corners line up in rows.
+/// A comb: concave, with many parallel teeth. All corners lie on a grid, so that they line up in rows.
 inline std::vector<dvec2> comb(int teeth, double size) {
     std::vector<dvec2> outline = {{-size, -size}, {size, -size}};
     const double step = 2 * size / (2 * teeth - 1);
@@ -83,7 +84,7 @@ inline std::vector<dvec3> lift(const std::vector<dvec2>& outline, const Axes& ax
     return lifted;
 }
 
-/// Even-odd: on which side of the outline a point lies, and how far its nearest edge is.
+/// Even-odd rule: whether a point lies inside an outline, and how far the nearest edge is.
 struct Place {
     bool inside = false;
     double distance = 1e300;
@@ -110,11 +111,11 @@ inline std::vector<dvec2> projected(const std::vector<dvec3>& outline, int drop)
 }
 inline double area_of(const std::vector<dvec3>& outline) { return 0.5 * glm::length(newell(outline)); }
 
-/// A closed surface: its scene, and points that certainly lie inside of it.
+/// A closed surface: its scene, and random points that certainly lie inside it.
 struct Closed {
     CellScene scene;
     std::function<dvec3(Random&)> inside;
-    /// Whether there is a way to it from every side: nothing of it lies on the cube's own faces.
+    /// Whether it can be reached from every side: none of its vertices lies on the faces of the cube.
     bool has_outside() const {
         const Box cube = scene.frame.cube();
         for (const Polygon& polygon : scene.polygons) {
@@ -135,7 +136,7 @@ inline CellScene empty_cube(int width, int height, double depth, int levels) {
     return scene;
 }
 
-/// What a scene in its own frame is loaded with, without an exterior.
+/// Settings to load a scene in its own frame, without an exterior.
 inline PictureSettings settings_for(const CellScene& scene, HitTest rung, Numbers arithmetic) {
     PictureSettings settings;
     settings.width = scene.frame.width;
@@ -150,7 +151,7 @@ constexpr HitTest every_rung[] = {HitTest::depth, HitTest::interval, HitTest::pl
                                   HitTest::edge};
 constexpr Numbers both_arithmetics[] = {Numbers::fixed, Numbers::exact};
 
-/// The six faces of centre ± the axes times `half`; fronts outwards, or inwards.
+/// Adds the six faces of centre ± axes * `half`. Their fronts face outwards, or inwards if `inward`.
 inline void add_block(CellScene& scene, const dvec3& centre, const Axes& axes, const dvec3& half,
                       bool inward = false) {
     std::array<dvec3, 8> corner;
@@ -167,7 +168,7 @@ inline void add_block(CellScene& scene, const dvec3& centre, const Axes& axes, c
     }
 }
 
-/// A block: turned at random, or (aligned) with all faces exactly on borders of cells and levels.
+/// A block: turned at random, or (`aligned`) with all faces exactly on borders of cells and levels.
 inline Closed block(Random& random, bool aligned) {
     Closed closed;
     closed.scene = empty_cube(24, 20, 32, aligned ? 32 : 257);
@@ -192,7 +193,7 @@ inline Closed block(Random& random, bool aligned) {
     return closed;
 }
 
-/// A ball of facets with vertices shared bit for bit.
+/// A ball of facets that share their vertices bit for bit.
 inline Closed ball(Random& random) {
     Closed closed;
     closed.scene = empty_cube(22, 24, 26, random.whole(20, 1024));
@@ -206,7 +207,7 @@ inline Closed ball(Random& random) {
     return closed;
 }
 
-/// A wedge: a long thin prism over a triangle, down to 1/500 of its length.
+/// A wedge: a long prism over a triangle, as thin as 1/500 of its length.
 inline Closed wedge(Random& random) {
     Closed closed;
     closed.scene = empty_cube(24, 24, 24, random.whole(24, 2000));
@@ -238,7 +239,7 @@ inline Closed wedge(Random& random) {
     return closed;
 }
 
-/// A room with furniture: the rays start in it. Its walls are parallel to the axes, as Cornell's are.
+/// A room with one block in it. Its walls are parallel to the axes, as in the Cornell box; rays start inside.
 inline Closed room(Random& random) {
     Closed closed;
     closed.scene = empty_cube(20, 20, 40, random.whole(40, 1024));
@@ -253,7 +254,7 @@ inline Closed room(Random& random) {
     return closed;
 }
 
-/// A room with a mirror ball, a glass block and two sources, seen by a viewer at infinity.
+/// A mirror ball and a glass block before a wall, with two sources, seen by a viewer at infinity.
 inline CellScene still_life(Random& random) {
     CellScene scene =
         empty_cube(random.whole(1, 20), random.whole(1, 20), random.uniform(8, 20), random.whole(8, 512));
@@ -272,8 +273,8 @@ inline CellScene still_life(Random& random) {
     return scene;
 }
 
-/// A direction whose slope dz/dx is log-uniform from 1/1000 to 1000, sometimes 0, sometimes axial, often in a
-/// plane of the axes.
+/// A random direction. The slope dz/dx is log-uniform from 1/1000 to 1000 and sometimes 0; some directions
+/// are axial, and many lie in a plane of the axes.
 inline dvec3 sloped_direction(Random& random) {
     if (random.chance(0.05)) return {0, 0, random.chance(0.5) ? 1 : -1};
     const double turn = random.uniform(0, 2 * pi);

@@ -1,4 +1,4 @@
-// Curved objects into facets: closed, outward, as fine as asked.
+// Tessellation of curved objects: facets are closed, face outwards and keep the chord error.
 #include "model/geometry/tessellate.hpp"
 
 #include <map>
@@ -21,7 +21,7 @@ Frame frame_of(Random& random) {
     return frame;
 }
 
-/// How many facets have each directed edge, by the bits of its ends.
+/// How many facets have each directed edge; ends are compared bit for bit.
 using Corner = std::array<double, 3>;
 std::map<std::pair<Corner, Corner>, int> edges_of(const std::vector<Polygon>& facets) {
     std::map<std::pair<Corner, Corner>, int> edges;
@@ -64,7 +64,8 @@ TEST(Tessellation, FacetsOfASphereStayWithinTheChordErrorAndFaceOutwards) {
         const dvec3 centre = frame.to_cells(sphere.centre);
         const double side = sphere.inward ? -1 : 1;
         for (const Polygon& facet : tessellate({0, sphere}, 0, frame, chord)) {
-            // The point of the plane next to the centre is where the gap is largest, if the facet holds it.
+            // The gap is largest where the facet's plane is nearest to the centre, if the facet contains that
+            // point.
             const double gap = radius - std::abs(facet.plane.c - glm::dot(facet.plane.n, centre));
             EXPECT_LE(gap, chord * (1 + 1e-9)) << "radius " << radius;
             const dvec3 middle = (facet.vertices[0] + facet.vertices[1] + facet.vertices[2]) / 3.0 - centre;
@@ -110,7 +111,7 @@ TEST(Tessellation, EveryEdgeOfAConeButThoseOfItsRimsIsSharedByTwoFacetsBitForBit
             const dvec3 middle = (facet.vertices[0] + facet.vertices[1] + facet.vertices[2]) / 3.0;
             const dvec3 out = middle - base - glm::dot(middle - base, axis) * axis;
             EXPECT_GT(side * glm::dot(facet.plane.n, out), 0);
-            // The vertex normals are those of the cone: at right angles to its lines.
+            // The vertex normals are those of the cone: at right angles to its generating lines.
             for (const dvec3& v : facet.vertices) {
                 const dvec3 normal = facet.normal.at(project(v, facet.drop));
                 EXPECT_GT(glm::dot(normal, facet.plane.n), 0.5);

@@ -1,4 +1,4 @@
-// Synthetic traffic: draws that depend on the tree alone, with the probabilities that were asked for.
+// Synthetic traffic: draws depend on the tree alone and have the probabilities that were set.
 #include "model/tracing/traffic.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace raycell {
 namespace {
 
-/// An array with traffic in it, as both machines build it.
+/// An array with traffic in it, built as both machines build it.
 struct Loaded {
     Loaded(const TrafficSettings& asked, int width, int height, int generations)
         : settings(asked),
@@ -296,7 +296,7 @@ TEST(StorageBits, OfBuffersFollowTheNetworks) {
         sized.machine.buffer_depth = depth;
         return storage_bits(sized.picture, sized.machine, sized.formats, 1);
     };
-    // Rays: one buffer a link; with halves two on a vertical link, with quadrants two on every link.
+    // Ray buffers: one per link; with `half`, two on vertical links; with `quadrant`, two on every link.
     EXPECT_EQ(bits(Networks::shared, 1).ray_buffers, 4 * messages.ray);
     EXPECT_EQ(bits(Networks::shared, 1).answer_buffers, 0);
     EXPECT_EQ(bits(Networks::split, 1).ray_buffers, 4 * messages.ray);
@@ -338,7 +338,7 @@ TEST(StorageBits, OfRegistersFollowTheMachine) {
     Sized sized;
     const auto bits = [&] { return register_bits(sized.picture, sized.machine, sized.formats, 1); };
     const RegisterBits plain = bits();
-    sized.machine.buffer_depth = 4;  // a credit counter per output and class: 1 to 3 bits
+    sized.machine.buffer_depth = 4;  // a credit counter per output and class grows from 1 to 3 bits
     EXPECT_EQ(bits().credits, plain.credits + 10 * 2);
     sized.machine = {};
     sized.machine.networks = Networks::quadrant;  // eight ray inputs, not six
@@ -351,7 +351,7 @@ TEST(StorageBits, OfRegistersFollowTheMachine) {
     sized.machine.link_bits = 256;  // a message takes one cycle: one bit says that the wires are busy
     EXPECT_EQ(bits().credits, plain.credits - 8 * 3);
     sized.machine = {};
-    sized.picture.shadows = Shadows::precast;  // whose source and voxel are counted through
+    sized.picture.shadows = Shadows::precast;  // its source and voxel are counters
     EXPECT_GT(bits().own_ray, plain.own_ray);
 }
 

@@ -15,7 +15,8 @@ bool inside(const Trapeze& t, const dvec2& uv) {
     return true;
 }
 
-/// Points of the polygon's plane are in a trapeze exactly when they are in the polygon, and the areas add up.
+/// Every point of the polygon's plane lies in a trapeze exactly if it lies in the polygon, and the areas add
+/// up.
 void expect_tiled(const Polygon& polygon, Random& random) {
     const std::vector<Trapeze> trapezes = precompute(polygon, exact_arithmetic());
     double area = 0;
@@ -50,7 +51,7 @@ void expect_tiled(const Polygon& polygon, Random& random) {
         if (place.distance < 1e-6) continue;
         int holders = 0;
         for (const Trapeze& t : trapezes) holders += inside(t, p);
-        // Two trapezes may share a point of the cut between them, at most.
+        // At most two trapezes share a point: on the cut between them.
         if (place.inside) {
             EXPECT_GE(holders, 1) << "inside at " << p.x << ", " << p.y;
             EXPECT_LE(holders, 2);
@@ -110,14 +111,14 @@ TEST(Trapezes, ARectangleIsOneAndATriangleAtMostTwo) {
               2u);
     EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {4, 1, 5}, {2, 4, 6}}), exact_arithmetic()).size(),
               1u);
-    // Corners on straight sides cost cuts, no area.
+    // Corners on straight sides cost cuts but no area.
     EXPECT_EQ(precompute(make_polygon(0, 0, {{1, 1, 5}, {2, 1, 5}, {4, 1, 5}, {4, 3, 5}, {1, 3, 5}}),
                          exact_arithmetic())
                   .size(),
               1u);
 }
 
-/// Trapezes as corners alone, found the plain way: for every slab between two vertices all sides are asked.
+/// A plain cutter that returns only corners: for every slab between two vertices it tests all sides.
 class PlainCutter {
   public:
     using Corners = std::vector<dvec3>;
@@ -243,7 +244,7 @@ TEST(Trapezes, AreThoseOfThePlainSweepBitForBitAndInItsOrder) {
         const shapes::Axes axes =
             random.chance(0.2) ? shapes::Axes() : shapes::attitude(random, int(seed % 6));
         auto outline = shapes::lift(any_outline(random), axes, {20, 20, 25});
-        if (random.chance(0.4)) {  // clipping leaves bridges
+        if (random.chance(0.4)) {  // clipping leaves degenerate edges
             const double right = random.uniform(18, 26);
             outline = clip_to_box(outline, {{16, 17, 22}, {right, random.uniform(18, 26), 28}});
         }

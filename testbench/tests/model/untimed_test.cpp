@@ -87,7 +87,7 @@ TEST(Untimed, APolygonFacingTheViewerIsSeenWhereItIs) {
 }
 
 TEST(Untimed, DepthAndWeightLimitTheTree) {
-    // Two facing mirrors across the view: a primary ray that enters at a slant bounces until it is cut.
+    // Two facing mirrors across the view: a primary ray that enters at a slant bounces until a limit cuts it.
     CellScene scene = shapes::empty_cube(8, 8, 40, 400);
     scene.frame.viewer_at_infinity = false;
     scene.frame.eye = {-8, 4, -20};
@@ -141,7 +141,7 @@ TEST(Untimed, TheDisplayAfterLoadingShowsTheNearestVoxel) {
             for (int x = 0; x < 6; ++x) {
                 const bool covered = x >= 1 && x < 4 && y >= 1 && y < 3;
                 EXPECT_EQ(picture.at(x, y).polygon, covered ? 1u : 0u);
-                // Lit straight from the front: ambient and diffuse, nearly all of it.
+                // Lit from straight ahead: ambient and nearly all of the diffuse term.
                 EXPECT_NEAR(picture.at(x, y).colour.x, 0.8 * 1.1, 2e-3);
             }
         }

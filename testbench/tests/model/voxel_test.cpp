@@ -16,7 +16,7 @@ const Arithmetic& exact = exact_arithmetic();
 
 CellScene cube(Random& random) { return shapes::empty_cube(width, height, 24, random.whole(12, 2048)); }
 
-/// A polygon of any attitude that lies wholly inside the cube, never closer to its faces than 0.5.
+/// Adds a random polygon that lies inside the cube, at least 0.5 from its faces.
 void add_random_polygon(CellScene& scene, Random& random, int corners) {
     const shapes::Axes axes = shapes::attitude(random, random.whole(0, 5));
     const double size = std::pow(10, random.uniform(-1.5, 0.9));
@@ -28,7 +28,7 @@ PictureSettings settings_of(const CellScene& scene, HitTest rung) {
     return shapes::settings_for(scene, rung, Numbers::exact);
 }
 
-/// A point of the polygon (star-shaped round its centre is not assumed): tried until inside.
+/// A random point of the polygon, drawn until one lies inside. Returns false after 50 tries.
 bool point_of(const Polygon& polygon, Random& random, dvec3& point) {
     const auto outline = shapes::projected(polygon.vertices, polygon.drop);
     dvec2 low(1e300), high(-1e300);
@@ -68,7 +68,7 @@ TEST(Voxels, EveryPointOfAPolygonIsHitInItsCellAtEveryRungButDepth) {
                     EXPECT_NEAR(glm::dot(voxel.plane.n, local), voxel.plane.c, 1e-9);
                     const bool in_run =
                         voxel.near_level * level <= p.z + 1e-7 && voxel.far_level * level >= p.z - 1e-7;
-                    // A short ray through the point, across the plane, must hit.
+                    // A short ray through the point, at right angles to the plane, must hit.
                     constexpr double reach = 1e-3;
                     Ray ray;
                     ray.position = local - reach * voxel.plane.n;
@@ -133,7 +133,7 @@ TEST(Spans, AdvancedToACellAgreeWithOneCutFromThere) {
                 EXPECT_LE(span->x, span->last);
                 EXPECT_LT(span->last, width);
                 for (;; advance(*span, exact)) {
-                    // Moved by whole cells, the scene is cut at column 0 with the same numbers.
+                    // Compared with the trapeze moved by whole cells, so that this cell is at column 0.
                     Trapeze moved = trapeze;
                     moved.plane.c -= moved.plane.n.x * span->x;
                     for (dvec3& p : moved.corners) p.x -= span->x;
@@ -143,7 +143,7 @@ TEST(Spans, AdvancedToACellAgreeWithOneCutFromThere) {
                         EXPECT_NEAR(glm::dot(span->plane.n, p), span->plane.c, 1e-9);
                         EXPECT_GE(p.y, -span->slack.y - 1e-12);
                         EXPECT_LE(p.y, 1 + span->slack.y + 1e-12);
-                        // What lies over the cell lies between near and far.
+                        // All that lies over the cell is between near and far.
                         if (p.x < 0 || p.x > 1) continue;
                         const double slack = 1e-6;
                         EXPECT_GE(p.z, std::max(span->near, span->z_min) - slack);
@@ -201,7 +201,7 @@ TEST(Voxels, AreasOfTheCellsAddUpToThatOfThePolygon) {
         for (const CellStore& store : load_array(scene, settings_of(scene, HitTest::edge), exact)) {
             for (const Voxel& voxel : store.voxels) sum += voxel.area;
         }
-        // Cells share a hair at their borders.
+        // Neighbouring cells overlap by the tolerance at their borders.
         EXPECT_NEAR(sum, shapes::area_of(scene.polygons[0].vertices), 1e-5 * std::max(1.0, sum));
     }
 }
@@ -231,25 +231,25 @@ TEST(Voxels, ThatDoNotFitAreCountedOnceEach) {
 
 TEST(Voxels, BitsGrowFromRungToRungAndWithTheWord) {
     PictureSettings settings;
-    // A cube of 256 cells has 8 bits before a depth's point.
+    // In a cube of 256 cells, depths have 8 bits before the point.
     const Formats formats(20, Rounding::nearest, {128, 128, 256, 0.25});
     const auto bits = [&](HitTest rung) {
         settings.hit = rung;
         return voxel_bits(settings, formats, 2);
     };
     settings.normals = Normals::voxel;
-    // Id; features: six of 12 bits, Shine 12, index of refraction 16, mirror; a level of 1024; a normal.
+    // Id; features: six of 12 bits, Shine 12, index of refraction 16, mirror flag; a level of 1024; a normal.
     EXPECT_EQ(feature_bits(formats), 6 * 12 + 12 + 16 + 1);
     EXPECT_EQ(bits(HitTest::depth).base, 20 + 101 + 10 + 60);
     EXPECT_EQ(bits(HitTest::interval).base, bits(HitTest::depth).base + 10);
-    // Two slopes, an offset; two bits for the axis, one for the sign.
+    // Two slopes and an offset; two bits for the axis, one for the sign.
     EXPECT_EQ(bits(HitTest::plane).base, bits(HitTest::interval).base + 3 * 20 + 3);
-    // 64 sub-cells; four borders of the window, each a 32nd from 0 to 32: five bits as 0 to 31 or 1 to 32.
+    // 64 sub-cells; four borders of the window in 32nds. Each needs five bits: 0 to 31, or 1 to 32.
     EXPECT_EQ(bits(HitTest::mask).base, bits(HitTest::plane).base + 64 + 4 * 5);
     EXPECT_EQ(bits(HitTest::edge).base, bits(HitTest::plane).base + 8);
     EXPECT_EQ(bits(HitTest::edge).per_edge, 2 * 20 + (8 + 20) + 2);
     EXPECT_EQ(bits(HitTest::mask).per_edge, 0);
-    // The paper's voxel has 40 bytes; its own kind of voxel must not need more.
+    // The paper's voxel has 40 bytes; the rung of the paper must not need more.
     EXPECT_LE(bits(HitTest::depth).base, 40 * 8);
     const int bare = bits(HitTest::plane).base;
     settings.shadows = Shadows::precast;
@@ -260,7 +260,7 @@ TEST(Voxels, BitsGrowFromRungToRungAndWithTheWord) {
     settings.normals = Normals::linear;
     EXPECT_EQ(bits(HitTest::plane).base, precast + 2 + 120);
     const Formats narrower(16, Rounding::nearest, {128, 128, 256, 0.25});
-    // Three words of plane, nine of normals, three of the point.
+    // Three words of the plane, nine of the normals, three of the point.
     EXPECT_EQ(voxel_bits(settings, narrower, 2).base, voxel_bits(settings, formats, 2).base - 4 * 15);
     const Formats least(8, Rounding::nearest, {128, 128, 256, 0.25});
     EXPECT_EQ(feature_bits(least), 6 * 8 + 12 + 8 + 1) << "words shorter than 12 bits shorten features too";

@@ -1,4 +1,4 @@
-// Sends one ray through a loaded array exactly as the untimed machine does.
+// Sends one ray through a loaded array as the untimed machine does.
 #pragma once
 
 #include <cmath>
@@ -16,11 +16,12 @@ struct Found {
     std::uint32_t voxel = 0;
     int x = 0;  ///< the cell
     int y = 0;
-    Ray ray;  ///< as it stood in that cell
+    Ray ray;  ///< as it was in that cell
     CellHit hit;
 };
 
-/// A ray that starts at a point inside the cube, in array coordinates; in words, the nearest to it.
+/// A ray from a point inside the cube, in array coordinates; sets `x` and `y` to its cell. In fixed
+/// arithmetic, place and direction are rounded to words.
 inline Ray ray_at(const Context& context, const dvec3& origin, const dvec3& direction, int& x, int& y) {
     const Arithmetic& arithmetic = context.arithmetic;
     x = std::min(std::max(int(std::floor(origin.x)), 0), context.scene.frame.width - 1);
@@ -34,7 +35,8 @@ inline Ray ray_at(const Context& context, const dvec3& origin, const dvec3& dire
     return ray;
 }
 
-/// The first hit, or nothing if the ray leaves the cube.
+/// The first hit, or nothing if the ray leaves the cube. Throws std::logic_error if it never leaves the
+/// array.
 inline std::optional<Found> walk(const std::vector<CellStore>& cells, const Context& context, Ray ray, int x,
                                  int y) {
     const Frame& frame = context.scene.frame;
@@ -61,7 +63,7 @@ inline std::optional<Found> walk(const std::vector<CellStore>& cells, const Cont
     throw std::logic_error("a ray never leaves the array");
 }
 
-/// Distance from a point inside the cube to where a ray leaves it.
+/// Distance along a direction from a point inside the cube to its border.
 inline double way_out(const CellScene& scene, const dvec3& origin, const dvec3& direction) {
     const Box cube = scene.frame.cube();
     double t = 1e300;

@@ -1,5 +1,5 @@
-// Closed surfaces in words: planes, edges and rays are rounded, and still no ray passes between them, but for
-// the very tip of sharp edges.
+// Closed surfaces in fixed-point words: planes, edges and rays are rounded, and still no ray passes between
+// them, except at the very tip of sharp edges.
 #include "leaks.hpp"
 
 namespace raycell {
@@ -68,8 +68,8 @@ TEST(WatertightWords, NoRaySlipsThroughAnEdgeOrACornerOfARoom) {
     expect_no_leak(shapes::room, 5000, 12, at_edges);
 }
 
-/// The plane of one cell and that of the next are two roundings of the polygon's: a ray that grazes it passes
-/// the first beyond the border and the second before it.
+/// The planes in two neighbouring cells are rounded separately from the polygon's plane. A grazing ray could
+/// pass the first beyond the border and the second before it.
 TEST(WatertightWords, NoRaySlipsBetweenTheCellsThatAFacePasses) {
     expect_no_leak(turned_block, 2000, 15, at_borders);
     expect_no_leak(shapes::wedge, 4000, 15, at_borders);
@@ -77,8 +77,8 @@ TEST(WatertightWords, NoRaySlipsBetweenTheCellsThatAFacePasses) {
     expect_no_leak(shapes::room, 5000, 6, at_borders);
 }
 
-/// A prism with an edge of `angle`: the edge's ends, the way from it along one of its two faces, and that
-/// face's normal.
+/// A prism with a sharp edge: the ends of the edge, the direction from it along one of its two faces, and
+/// that face's normal.
 struct Knife {
     Closed closed;
     dvec3 ends[2];
@@ -118,7 +118,7 @@ Knife knife(Random& random, double angle) {
     return made;
 }
 
-/// Rays from inside that meet a face so many last bits from the edge.
+/// Counts leaks of rays from inside that meet a face `last_bits` last bits away from the edge.
 int leaks_beside_the_edge(double angle, double last_bits, int word_bits, std::uint64_t seed,
                           std::string& first) {
     Random random(seed);
@@ -131,7 +131,7 @@ int leaks_beside_the_edge(double angle, double last_bits, int word_bits, std::ui
             const dvec3 on_edge = glm::mix(sharp.ends[0], sharp.ends[1], random.uniform(0.02, 0.98));
             const dvec3 origin = sharp.closed.inside(random);
             const dvec3 direction = glm::normalize(on_edge + way * sharp.along_face - origin);
-            // Those that only graze the face are off by more.
+            // Rays that only graze the face are off by more.
             if (glm::dot(direction, sharp.outwards) < 0.5 * std::sin(angle)) continue;
             return Shot{origin, direction, 1e300};
         }
@@ -141,7 +141,8 @@ int leaks_beside_the_edge(double angle, double last_bits, int word_bits, std::ui
 }
 
 TEST(WatertightWords, AnEdgeIsOpenForTheLastBitsOfItsPlanesOverItsAngleAndNoFarther) {
-    // Two planes, each off by a few last bits, meet that much over their angle away from the true edge.
+    // Two planes that are off by a few last bits meet at that distance, divided by their angle, from the true
+    // edge.
     int at_the_tip = 0;
     for (const std::uint64_t seed : property::seeds(6000, 25)) {
         for (const double degrees : {90.0, 60.0, 20.0, 5.0, 2.0}) {

@@ -43,7 +43,7 @@ TEST(Watertight, NoRayPassesThroughAThinWedge) { expect_no_leak(shapes::wedge, 4
 
 TEST(Watertight, NoRayLeavesAClosedRoom) { expect_no_leak(shapes::room, 5000, 20, 1500); }
 
-/// A room whose walls are the cube's own faces.
+/// A room whose walls are the faces of the cube.
 Closed whole_cube(Random& random) {
     Closed closed;
     const int width = random.whole(1, 12);
@@ -62,8 +62,8 @@ TEST(Watertight, NoRayLeavesARoomWhoseWallsAreTheFacesOfTheCube) {
     expect_no_leak(whole_cube, 6000, 20, 500);
 }
 
-/// A block whose corners are rounded as a scene file with few digits has them: its faces are not quite
-/// planar, within what the readers take as planar (1e-4 of the size).
+/// A block whose corners are rounded as in a scene file with few digits: its faces are not quite planar, but
+/// within the readers' tolerance (1e-4 of the size).
 Closed rounded_block(Random& random) {
     Closed closed = shapes::block(random, false);
     const std::vector<Polygon> faces = std::move(closed.scene.polygons);
@@ -78,7 +78,7 @@ Closed rounded_block(Random& random) {
 
 TEST(Watertight, NoMoreThanTheOddRayPassesThroughABlockOfRoundedCorners) {
     // Planes that miss their corners by 1e-4 cells leave cracks of that width between faces: about 1e-4 of
-    // the rays that pass an edge in its cell. Holes inside of a face would let through far more.
+    // the rays that pass an edge in its cell get through. Holes inside a face would let far more through.
     int rays = 0;
     std::string first;
     int leaks = 0;
@@ -94,9 +94,9 @@ TEST(Watertight, NoMoreThanTheOddRayPassesThroughABlockOfRoundedCorners) {
     EXPECT_LE(leaks, rays / 20000) << "of " << rays << " rays; the first " << first;
 }
 
-/// A wall nearly parallel to z with corners off its plane by up to a thousandth of a cell, a
-/// hundred-thousandth of its size: ten times flatter than what the readers take as planar. The rays cross it
-/// near where it passes from one column of cells to the next.
+/// A wall nearly parallel to z. Its corners miss its plane by up to a thousandth of a cell, a
+/// hundred-thousandth of its size: a tenth of what the readers accept as planar. The rays cross the wall near
+/// where it passes from one column of cells to the next.
 TEST(Watertight, AWallWhoseCornersMissItsPlaneByAThousandthOfACellHasNoHole) {
     int rays = 0;
     int leaks = 0;
@@ -140,8 +140,8 @@ TEST(Watertight, AWallWhoseCornersMissItsPlaneByAThousandthOfACellHasNoHole) {
     EXPECT_EQ(leaks, 0) << "of " << rays << " rays; the first: " << first;
 }
 
-/// Rays that meet the surface exactly on an edge or in a corner: two or more polygons have the point, none
-/// may miss it.
+/// Rays that meet the surface exactly on an edge or in a corner: the point belongs to two or more polygons,
+/// and at least one must be hit.
 TEST(Watertight, NoRaySlipsThroughAnEdgeOrACorner) {
     const auto at_edges = [](const Closed& closed, const PictureSettings& settings, Random& random) {
         return leaks::shoot_at_edges(closed, settings, 400, random, 1e-5);
