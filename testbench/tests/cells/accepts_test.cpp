@@ -1,4 +1,4 @@
-// The rule that the search over all orders uses for slots is the ray store's.
+// The ray store follows the same slot rule as the search over all orders.
 #include "../property.hpp"
 #include "cells/units/ray_store.hpp"
 #include "testbench/protocol/search.hpp"
@@ -6,8 +6,9 @@
 namespace raycell {
 namespace {
 
-/// What would_help says of a refused ray is what the rule says once such a slot is given back, and again
-/// until no more of that kind are held.
+/// Expects would_help to agree with the rule for a refused ray: if releasing one slot of a generation lets
+/// the ray in, it helps; if it does not help, releasing all slots of that generation does not let it in
+/// either.
 void expect_help(const RayStore& store, const protocol::Rules& rules, const std::vector<int>& used,
                  int generation) {
     EXPECT_FALSE(store.has_room(generation));

@@ -1,5 +1,5 @@
-// What was sent has come home or is still there, whenever a run is stopped; and a machine that miscounts says
-// so.
+// Wherever a run is stopped, every message sent has been delivered or is still there; a machine that
+// miscounts ends in an error.
 #include <map>
 
 #include "elaboration.hpp"
@@ -7,7 +7,7 @@
 namespace raycell {
 namespace {
 
-/// Equal machines, to be stopped at different times, one after the other.
+/// Equal machines, to be stopped at different cycles, one after the other.
 class Machines {
   public:
     explicit Machines(std::size_t count, Shadows shadows = Shadows::precast) {
@@ -17,7 +17,7 @@ class Machines {
         placed_ = place_own_scene("facing_mirrors", settings_);
         MachineSettings machine;
         machine.buffer_depth = 2;
-        machine.ray_store = waiting_generations(Context(placed_->scene, settings_));  // as few as always end
+        machine.ray_store = waiting_generations(Context(placed_->scene, settings_));  // least that always ends
         machine.exterior_processors = 3;  // few and slow: rays wait in them
         machine.exterior_latency = 500;
         for (std::size_t i = 0; i < count; ++i) {
@@ -38,7 +38,7 @@ class Machines {
     std::vector<Machine*> machines_;
 };
 
-/// The sums that a run checks at its end, from what it tells.
+/// The sums that a run checks at its end, recomputed from its result.
 void expect_sums(const RunResult& result) {
     const Counters& c = result.counters;
     EXPECT_EQ(c.rays_sent, c.rays_answered + c.rays_silent + c.rays_destroyed + result.in_flight.rays);
@@ -99,9 +99,9 @@ const std::map<std::string, Counter> counters{
     {"answers sent", &Counters::answers_sent},     {"answers delivered", &Counters::answers_delivered},
     {"load messages sent", &Counters::loads_sent}, {"load messages delivered", &Counters::loads_delivered}};
 
-/// Of machines that stop in the middle of loading, and of tracing, each miscounts something by one.
+/// Stops machines in the middle of loading or tracing, each with one counter off by one; expects an error.
 void expect_miscounting_is_seen(bool while_loading) {
-    // Casting in advance ends by what is counted.
+    // The precast phase ends by these counters, so shadows are per hit here.
     Machines machines(counters.size() + 1, Shadows::per_hit);
     const RunResult whole = machines[0].run();
     const Cycle limit = while_loading ? whole.load_cycles / 2 : whole.ended - whole.trace_cycles / 2;

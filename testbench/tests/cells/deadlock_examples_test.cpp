@@ -1,12 +1,12 @@
-// One small machine for each claim of cells/deadlock/deadlock.md that a combination need not end, and beside
-// it the one that does.
+// One small machine for each combination that, by cells/deadlock/deadlock.md, need not end, and beside it the
+// one that does.
 #include "../truth/hand_made.hpp"
 #include "elaboration.hpp"
 
 namespace raycell {
 namespace {
 
-/// The same picture by several machines, one after the other in one process.
+/// Runs machines with different settings on one scene, one after the other in one process.
 class Variants {
   public:
     using Change = std::function<void(MachineSettings&)>;
@@ -18,7 +18,7 @@ class Variants {
         std::vector<Machine*> machines;  // never destroyed: SystemC destroys ports in quadratic time
         for (const Change& change : changes) {
             MachineSettings machine;
-            machine.costs.backoff = 4;  // short: a livelock is waited for
+            machine.costs.backoff = 4;  // short, since each livelock must be waited for
             change(machine);
             const std::string name = "machine_" + std::to_string(machines.size());
             machines.push_back(new Machine(name.c_str(), scene, settings, machine, exterior));
@@ -51,7 +51,7 @@ Variants of_own_scene(const std::string& name, int cells, int max_depth,
 }
 
 /// Two cells. The ray of pixel (0, 0) meets a mirror at 45 degrees, goes east, comes straight back from a
-/// mirror in cell (1, 0), and meets the first one again: its third hit wants a slot of the cell that holds
+/// mirror in cell (1, 0) and meets the first mirror again. Its third hit needs a slot in the cell that holds
 /// its first.
 CellScene there_and_back() {
     CellScene scene = hand_made::cube(2, 1, 6);
@@ -79,7 +79,7 @@ TEST(TimedDeadlockExamples, ATreeThatComesBackToItsOnlySlotPostponesItselfForEve
                        {[](MachineSettings& m) { m.ray_store = 1; },
                         [](MachineSettings& m) { m.ray_store = 1, m.recovery = Recovery::none; },
                         [](MachineSettings& m) { m.ray_store = 1, m.slots = Slots::free; },
-                        [](MachineSettings& m) { m.ray_store = 2; },  // below the bound of 4, a kind scene
+                        [](MachineSettings& m) { m.ray_store = 2; },  // below the bound of 4, but it ends
                         [](MachineSettings& m) { m.ray_store = 4; },
                         [](MachineSettings& m) { m.ray_store = 2, m.recovery = Recovery::none; }});
     run.expect_stuck(0, Verdict::livelock);
@@ -93,7 +93,7 @@ TEST(TimedDeadlockExamples, ATreeThatComesBackToItsOnlySlotPostponesItselfForEve
 }
 
 TEST(TimedDeadlockExamples, ARayThatWaitsForASlotAtTheHeadOfABufferLocksWherePostponingEnds) {
-    // M is the bound: a slot for each of three generations. One more slot is enough for this scene.
+    // M is at the bound: one slot for each of three generations. For this scene, one more slot is enough.
     const Variants run =
         of_own_scene("still_life", 8, 2,
                      {[](MachineSettings& m) { m.ray_store = 3, m.recovery = Recovery::none; },

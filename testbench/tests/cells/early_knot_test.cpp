@@ -1,4 +1,4 @@
-// Knots in machines that still run: what is locked in one cycle is locked for ever, whatever else moves.
+// Knots in machines that still run: what is locked in one cycle stays locked, whatever else moves.
 #include "elaboration.hpp"
 #include "knot_check.hpp"
 #include "model/tracing/traffic.hpp"
@@ -15,7 +15,7 @@ struct Drawn {
     std::string text;
 };
 
-/// Small machines that mostly lock, or go round in circles.
+/// Small machines that mostly end in a deadlock or livelock.
 std::unique_ptr<Drawn> draw(std::uint64_t seed) {
     property::Random random(seed);
     auto drawn = std::make_unique<Drawn>();
@@ -48,7 +48,7 @@ std::unique_ptr<Drawn> draw(std::uint64_t seed) {
     return drawn;
 }
 
-/// A place and the message that waits there, whatever came in behind it.
+/// A place and the message that waits there, without the messages behind it.
 using Held = std::tuple<int, int, int, std::string, std::string>;
 
 std::set<Held> locked(const WaitGraph& graph) {
@@ -68,7 +68,7 @@ void expect_knots(const WaitGraph& graph) {
         EXPECT_EQ(knot_check::objection(nodes, {knot.begin(), knot.end()}), "");
 }
 
-/// All that is locked in `before` is so in `after`, a later cycle of the same machine.
+/// Expects everything locked in `before` to be locked in `after`, a later cycle of the same machine.
 void expect_still_locked(const WaitGraph& before, const WaitGraph& after) {
     const std::set<Held> now = locked(after);
     for (const Held& each : locked(before)) {
@@ -77,7 +77,7 @@ void expect_still_locked(const WaitGraph& before, const WaitGraph& after) {
     }
 }
 
-/// Machines whose names differ, of one drawing: never destroyed, SystemC destroys ports in quadratic time.
+/// Makes a machine with a unique name. Never destroyed: SystemC destroys ports in quadratic time.
 Machine& machine_of(const Drawn& drawn, const MachineSettings& settings) {
     static int number = 0;
     const std::string name = "machine_" + std::to_string(number++);

@@ -1,4 +1,4 @@
-// What tests of timed modules share: one elaboration per process, actors that do as they are told, scenes.
+// Shared by tests of timed modules: one elaboration per process, scripted actors, scenes.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,8 @@
 
 namespace raycell {
 
-/// SystemC elaborates once per process: ctest runs each case in its own.
+/// SystemC elaborates once per process, so ctest runs each case in its own. Throws std::logic_error on a
+/// second call.
 inline void expect_first_elaboration() {
     static int elaborations = 0;
     if (++elaborations > 1)
@@ -24,7 +25,7 @@ inline void expect_first_elaboration() {
             "one elaboration per process: run by ctest, or with a --gtest_filter for one case");
 }
 
-/// Runs a function in each cycle in which it is woken; the function returns when to be woken next.
+/// Calls a function in each cycle in which it is woken; the function returns its next wake cycle, or never.
 class Actor : public sc_core::sc_module, public Client {
   public:
     SC_HAS_PROCESS(Actor);
@@ -46,7 +47,7 @@ class Actor : public sc_core::sc_module, public Client {
     sc_core::sc_event wake_;
 };
 
-/// One of the project's own scenes, with the tracer for what lies outside the cube.
+/// One of the project's own scenes, with a tracer for the part outside the cube.
 struct PlacedScene {
     CellScene scene;
     std::unique_ptr<TruthRenderer> truth;

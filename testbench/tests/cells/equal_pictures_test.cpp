@@ -1,5 +1,5 @@
-// Invariants 1 and 2: the timed machine's picture is the untimed one's, bit for bit, whatever only time
-// depends on.
+// Invariants 1 and 2: the timed machine's picture equals the untimed one's, bit for bit, for all settings
+// that only affect time.
 #include "elaboration.hpp"
 
 namespace raycell {
@@ -9,7 +9,7 @@ struct Drawn {
     std::string scene;
     PictureSettings settings;
     MachineSettings machine;
-    bool must_end = true;  ///< what design section 5 promises always comes to an end
+    bool must_end = true;  ///< whether design section 5 promises that the run ends
     std::string text;      ///< for messages
 };
 
@@ -54,12 +54,12 @@ Drawn draw(std::uint64_t seed) {
     for (const auto& [name, member] : CostTable::entries()) {
         if (random.chance(0.3)) m.costs.*member = std::uint32_t(random.whole(1, 60));
     }
-    CellScene lights;  // how many generations may have to wait depends on there being sources at all
+    CellScene lights;  // the number of generations that may have to wait depends on whether there are sources
     lights.sources.resize(1);
     const int least = std::max(waiting_generations(Context(lights, s)), 1);
     m.ray_store = random.whole(least, 16);
     if (random.chance(0.4)) m.ray_store = least;
-    if (random.chance(0.25)) {  // no promise: it may get stuck, but if it ends, then with the same picture
+    if (random.chance(0.25)) {  // no promise: it may get stuck, but if it ends, the picture is the same
         drawn.must_end = false;
         m.networks = Networks(random.whole(0, 3));
         m.slots = Slots(random.whole(0, 1));
@@ -96,7 +96,7 @@ TEST_P(TimedPicture, EqualsTheUntimedOneBitForBit) {
     EXPECT_EQ(result.storage.voxels, untimed.loaded().voxels);
     EXPECT_EQ(result.storage.overflowed, untimed.loaded().overflowed);
     EXPECT_LE(result.ray_store_peak, drawn.machine.ray_store);
-    // Invariant 3: nothing is lost on the way.
+    // Invariant 3: no message is lost.
     const Counters& c = result.counters;
     EXPECT_EQ(c.rays_sent, c.rays_answered + c.rays_silent + c.rays_destroyed);
     EXPECT_EQ(c.answers_sent, c.answers_delivered);
@@ -107,7 +107,7 @@ TEST_P(TimedPicture, EqualsTheUntimedOneBitForBit) {
             EXPECT_LE(link.statistics(index).peak, drawn.machine.buffer_depth);
         }
     }
-    // Without a postponement even the rays and their hops are the same.
+    // Without a postponement, the rays and their hops are the same too.
     const RayCounts& a = c.rays;
     const RayCounts& b = untimed.rays();
     EXPECT_EQ(a.primary, b.primary);
@@ -124,11 +124,11 @@ TEST_P(TimedPicture, EqualsTheUntimedOneBitForBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seed, TimedPicture, ::testing::Range<std::uint64_t>(1, 61));
-// A ray at the head of a buffer was passed over for ever by others that wanted the same output.
+// Here other rays for the same output went before the ray at the head of a buffer for ever.
 INSTANTIATE_TEST_SUITE_P(Starvation, TimedPicture, ::testing::Values<std::uint64_t>(1130));
 
 TEST(TimedSchedule, IsTheSameOnEveryRun) {
-    // Two machines in one process can't be: the second run is compared with what the first one wrote down.
+    // One elaboration per process: both machines are built before the first one runs.
     expect_first_elaboration();
     Drawn drawn = draw(7);
     drawn.scene = "still_life";

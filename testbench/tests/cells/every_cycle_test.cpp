@@ -1,5 +1,5 @@
-// A cell runs when something may have changed. One that runs in every cycle, as hardware does, must do the
-// same in the same cycles: nothing may depend on how often a cell is woken.
+// A cell only runs when something may have changed. A cell that runs in every cycle, as hardware does, must
+// do the same in the same cycles: nothing may depend on how often a cell is woken.
 #include "elaboration.hpp"
 
 namespace raycell {
@@ -41,14 +41,14 @@ class EveryCycle : public ::testing::TestWithParam<Case> {
 
 using LastCycles = std::array<Cycle, 3>;  ///< of each phase
 
-/// Notes down the last cycle that is run in each phase.
+/// Records the last cycle that is run in each phase.
 void watch_phases(Machine& machine, LastCycles& last) {
     machine.environment().scheduler.set_sampler(
         [&machine, &last](Cycle now) { last[std::size_t(machine.environment().phase)] = now; });
 }
 
-/// Wakes every cell for every cycle of a phase up to its last; a phase begins one cycle after the last one's
-/// end.
+/// Wakes every cell in every cycle of a phase, up to the last cycle recorded. A phase begins one cycle after
+/// the end of the one before.
 void run_in_every_cycle(Machine& machine, const LastCycles& last) {
     Scheduler& scheduler = machine.environment().scheduler;
     scheduler.set_sampler([&machine, &scheduler, &last](Cycle) {

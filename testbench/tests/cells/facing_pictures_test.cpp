@@ -1,4 +1,4 @@
-// What faces the viewer is seen by the timed machine too, at every word length.
+// The timed machine, too, shows what faces the viewer, at every word length.
 #include "../facing_quad.hpp"
 #include "elaboration.hpp"
 

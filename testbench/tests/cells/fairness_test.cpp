@@ -1,18 +1,18 @@
-// A cell alone, its neighbours played by actors: no ray that waits for an output is passed over for ever.
+// A cell alone, its neighbours played by actors: no ray that waits for an output starves.
 #include "lone_cell.hpp"
 
 namespace raycell {
 namespace {
 
-/// Rays that keep coming in over one link and class, all the same.
+/// A stream of equal rays that keep coming in over one link and class.
 struct Stream {
     Side from;
     dvec3 position;
     dvec3 direction;
 };
 
-/// Every stream's buffer is filled again as soon as it is empty; every output is read `pause()` cycles after
-/// a message has come. Returns how many rays of each stream left the cell.
+/// Refills the buffer of every stream as soon as it is empty, and reads every output `pause()` cycles after a
+/// message has arrived there. Returns how many rays of each stream left the cell.
 std::vector<int> run(LoneCell& lone, const std::vector<Stream>& streams, Cycle cycles,
                      const std::function<int()>& pause) {
     const BufferClasses& classes = lone.environment->classes;
@@ -50,7 +50,8 @@ const Stream from_north_to_west{Side::north, {0.1, 0, 5}, glm::normalize(dvec3(-
 const Stream from_east_to_west{Side::east, {1, 0.5, 5}, {-1, 0, 0}};
 const Stream from_south_to_north{Side::south, {0.5, 1, 5}, {0, -1, 0}};
 
-/// Those that want the same output share it, whatever goes on at the others.
+/// Expects streams that want the same output to share it, whatever passes over the others. `rivals` are those
+/// streams; `slowest` is the longest pause in cycles.
 void expect_shared(const std::vector<Stream>& streams, const std::vector<std::size_t>& rivals, int slowest) {
     for (const std::uint64_t seed : property::seeds(1, 1)) {
         SCOPED_TRACE(property::rerun(seed));

@@ -1,5 +1,5 @@
-// In words the timed machine's picture is the untimed one's too, bit for bit, at every width and whatever the
-// operators.
+// In fixed arithmetic, too, the timed machine's picture equals the untimed one's, bit for bit, at every word
+// length and with every operator method.
 #include "elaboration.hpp"
 
 namespace raycell {
@@ -15,7 +15,7 @@ void PrintTo(const Case& each, std::ostream* out) { *out << each.name; }
 
 class FixedPicture : public ::testing::TestWithParam<Case> {};
 
-/// Mirrors, glass and shadows; widths and shapes of the array differ from case to case.
+/// Scenes with mirrors, glass and shadows; word lengths and array shapes differ from case to case.
 TEST_P(FixedPicture, IsTheSameTimedAndUntimed) {
     expect_first_elaboration();
     const Case& each = GetParam();
@@ -49,7 +49,7 @@ TEST_P(FixedPicture, IsTheSameTimedAndUntimed) {
             ASSERT_EQ(pixel.colour[channel], word.hold(pixel.colour[channel])) << "what comes home is a word";
         }
     }
-    // It is not the exact picture by another name.
+    // The fixed picture must differ from the exact one.
     settings.numbers.arithmetic = Numbers::exact;
     UntimedMachine exact(placed->scene, settings, placed->exterior.get());
     EXPECT_NE(image_hash(exact.render()), image_hash(golden));

@@ -1,17 +1,17 @@
-// Who runs the cells, modules or tiles, must not show in anything that a run tells (invariants 2 and 4).
+// The host of the cells, modules or tiles, must not affect anything that a run reports (invariants 2 and 4).
 #include "elaboration.hpp"
 #include "model/tracing/traffic.hpp"
 
 namespace raycell {
 namespace {
 
-/// Every way of hosting an array of about twelve by twelve cells that could go wrong in its own manner.
+/// Ways of hosting an array of about 12x12 cells, one for each that could fail in its own way.
 std::vector<Granularity> every_granularity() {
     return {
         {false, {}, 64},                                // one tile
         {true, {}, 64},                                 // modules
-        {false, {}, 1},                                 // a tile each
-        {false, {}, 5},                                 // tiles that are cut off at the borders
+        {false, {}, 1},                                 // one tile per cell
+        {false, {}, 5},                                 // tiles cut off at the array's borders
         {false, {{3, 6, 4, 7}}, 5},                     // modules across the corners of tiles
         {false, {{0, 0, 0, 11}, {0, 11, 11, 11}}, 64},  // modules along two borders, tiles along the others
         {false, {{0, 11, 0, 11}}, 64}                   // modules, with a tile that has no cell

@@ -1,5 +1,5 @@
-// An independent check of a deadlock's knot: by search over the graph as it was dumped, with none of the
-// model's code.
+// An independent check of a deadlock's knot: a search over the dumped graph that uses none of the model's
+// code.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ struct Node {
     std::vector<std::size_t> waits_for;
 };
 
-/// The largest set of nodes none of which could go on even if everything outside of it did.
+/// The largest set of nodes of which none could go on even if everything outside the set did.
 inline std::set<std::size_t> dead_nodes(const std::vector<Node>& nodes) {
     std::set<std::size_t> dead;
     for (std::size_t i = 0; i < nodes.size(); ++i) dead.insert(i);
@@ -37,7 +37,7 @@ inline std::set<std::size_t> dead_nodes(const std::vector<Node>& nodes) {
     return dead;
 }
 
-/// The dead nodes that `from` waits for, directly or not.
+/// The dead nodes that `from` waits for, directly or indirectly.
 inline std::set<std::size_t> reachable(const std::vector<Node>& nodes, const std::set<std::size_t>& dead,
                                        std::size_t from) {
     std::set<std::size_t> reached;
@@ -52,8 +52,8 @@ inline std::set<std::size_t> reachable(const std::vector<Node>& nodes, const std
     return reached;
 }
 
-/// Why this set is no knot; nothing if it is one: all of it is dead, and each of it waits for all of it and
-/// for nothing dead outside.
+/// Why this set is no knot; empty if it is one. In a knot every node is dead, and waits, directly or
+/// indirectly, for all of the knot and for nothing dead outside it.
 inline std::string objection(const std::vector<Node>& nodes, const std::set<std::size_t>& knot) {
     if (knot.empty()) return "it is empty";
     const std::set<std::size_t> dead = dead_nodes(nodes);

@@ -1,4 +1,4 @@
-// Deadlocks on purpose, each kind with its near-miss: the proof finds the first and not the second.
+// Deadlocks made on purpose, each with a near-miss: the proof finds the first and not the second.
 #include "knot_check.hpp"
 #include "stuck.hpp"
 
@@ -7,7 +7,7 @@ namespace {
 
 using Change = std::function<void(PictureSettings&, MachineSettings&)>;
 
-/// How many nodes of each kind the knots are made of.
+/// Number of nodes of each kind in all knots.
 std::map<std::string, int> kinds_in_knots(const WaitGraph& graph) {
     std::map<std::string, int> kinds;
     for (const auto& knot : graph.knots()) {
@@ -35,7 +35,7 @@ void expect_proved(const Stuck& stuck) {
     EXPECT_EQ(cells, (std::set<std::pair<int, int>>(stuck.result.knot_cells.begin(),
                                                     stuck.result.knot_cells.end())));
     EXPECT_LE(stuck.result.knot_formed, stuck.result.ended);
-    // At a standstill everything that is left waits for a knot or is one.
+    // At a standstill, everything left is in a knot or waits for one.
     for (const WaitGraph::Node& n : graph.nodes())
         EXPECT_NE(n.state, WaitGraph::State::live) << n.what << n.wants;
 }
@@ -113,7 +113,8 @@ TEST(Knot, IsNotSeenInCongestionThatTheCycleLimitCut) {
 }
 
 TEST(Knot, ThatHasFormedIsSeenThoughTheCycleLimitCameFirst) {
-    // The run of OfSharedBuffersIsARingOfBuffersAlone goes on elsewhere until cycle 76469.
+    // The run of OfSharedBuffersIsARingOfBuffersAlone has its knot by then, but other parts move until cycle
+    // 76469.
     Stuck stuck("facing_mirrors", [](PictureSettings&, MachineSettings& m) {
         m.networks = Networks::shared;
         m.max_cycles = 75500;
@@ -133,7 +134,7 @@ TEST(TimeOut, AlarmsInACellOfEveryKnotOfBuffersWhatIsProvedLocked) {
         EXPECT_EQ(each.knot_alarms, each.knot_cells) << "a buffer of the ring waits in each of its cells";
         EXPECT_EQ(each.missed_knots, 0u);
         EXPECT_LE(each.false_alarms, false_before) << "longer time-outs are more patient";
-        // What else passes through the knot's cells may put off the alarm, until nothing moves any more.
+        // Other traffic through the knot's cells may delay the alarm until nothing moves any more.
         EXPECT_LE(each.first_alarm_delay,
                   std::int64_t(each.cycles + stuck.result.ended - stuck.result.knot_formed));
         false_before = each.false_alarms;
@@ -193,7 +194,7 @@ TEST_P(RandomStall, ChangesTheScheduleAndNeverThePicture) {
     const std::uint64_t golden = image_hash(untimed.render());
     std::set<std::uint64_t> schedules;
     std::vector<std::unique_ptr<Machine>> machines;
-    for (const std::uint64_t seed : {0, 1, 2}) {  // 0: without
+    for (const std::uint64_t seed : {0, 1, 2}) {  // 0: no stalls
         MachineSettings machine;
         machine.networks = each.networks;
         machine.stall = seed == 0 ? 0 : each.probability;

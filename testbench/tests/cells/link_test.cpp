@@ -67,7 +67,7 @@ TEST(Link, OfDepthOneTakesNothingUntilTheCycleAfterItsMessageIsRead) {
     bench.scheduler.wake(reader, 10);
     sc_core::sc_start();
     EXPECT_EQ(sent, (std::vector<Cycle>{1, 11, 21}));
-    // Full: no polling, it is woken in the cycle after room was made.
+    // When full, the sender does not poll: it is woken in the cycle after room was made.
     EXPECT_EQ(tried, (std::vector<Cycle>{1, 2, 11, 12, 21}));
     EXPECT_EQ(link.statistics(0).peak, 1);
     EXPECT_EQ(link.statistics(0).occupied_cycles, 9u + 9u);
@@ -118,7 +118,7 @@ TEST(Link, CountsPeakAndOccupancyOverTheTimeOfEachMessage) {
     EXPECT_EQ(s.occupied_cycles, 27u);  // sent in 1, 2, 3, read in 10, 11, 12
 }
 
-/// The same traffic over two links; on one the sender runs first in every cycle, on the other the receiver.
+/// The same traffic over two links: on one the sender runs first in every cycle, on the other the receiver.
 TEST(Link, DoesNotShowWhichEndRanFirst) {
     for (const std::uint64_t seed : property::seeds(1, 1)) {
         SCOPED_TRACE(property::rerun(seed));
@@ -136,7 +136,7 @@ TEST(Link, DoesNotShowWhichEndRanFirst) {
             std::unique_ptr<Link> link;
             std::vector<std::uint64_t> log;
             std::uint64_t next_id = 0;
-            std::set<Cycle> told;  ///< cycles in which the sender is told to try again, by whichever way
+            std::set<Cycle> told;  ///< cycles in which the sender may retry, by return value or by wake
         };
         std::deque<Pair> pairs;
         std::deque<std::unique_ptr<Actor>> actors;
@@ -163,7 +163,7 @@ TEST(Link, DoesNotShowWhichEndRanFirst) {
                         pair.link->pop(index);
                     }
                 };
-                // Log entries of one cycle in a fixed order, whoever ran first.
+                // Log entries of one cycle are put in a fixed order, whichever end ran first.
                 const std::string name = "pair_" + std::to_string(pairs.size());
                 actors.push_back(
                     std::make_unique<Actor>(name.c_str(), bench.scheduler, [=, &pair](Cycle now) {
@@ -223,7 +223,7 @@ TEST(Link, KeepsTheOrderOfMessagesWhateverItsDepth) {
         Actor both("both", bench.scheduler, [&](Cycle now) {
             for (std::size_t i = 0; i < links.size(); ++i) {
                 Cycle retry = never;
-                // Bursts: filling up and draining, so that the ring turns round and grows at any place.
+                // Bursts fill and drain the buffers, so that the ring wraps round and grows at any position.
                 const double eager = now / 50 % 2 ? 0.8 : 0.2;
                 if (random.chance(eager) && links[i]->can_send(0, retry)) {
                     links[i]->send(0, bench.message(id), 1);

@@ -1,4 +1,4 @@
-// The checks of loading_tb: they pass on what the machine does, and fail on what it must not do.
+// The checks of loading_tb: they pass on what the machine does and fail on faulty runs.
 #include <cmath>
 #include <map>
 
@@ -38,7 +38,7 @@ class Recorder : public LoadListener {
     std::vector<Event> events;
 };
 
-/// A small machine's loading, recorded, to be shown to a watch as it was or altered.
+/// The recorded loading of a small machine, to be replayed to a watch as it was or altered.
 struct Recording {
     Recording() {
         expect_first_elaboration();
@@ -54,7 +54,7 @@ struct Recording {
         result = machine.run();
         events = std::move(recorder.events);
     }
-    /// Items that were one stay one.
+    /// A watch that has been shown these events. Events about the same item still refer to one item.
     LoadWatch watch(const std::vector<Event>& shown) const {
         LoadWatch watch(plan, settings, Machine::stage_link_depth);
         std::map<const LoadItem*, LoadItem> items;
@@ -70,7 +70,7 @@ struct Recording {
         watch.finish();
         return watch;
     }
-    /// Index of the `count`-th event of this sort.
+    /// Index of the `count`-th event (from 0) with these properties.
     std::size_t find(bool sent, std::size_t link, LoadItem::Kind kind, int count = 0) const {
         for (std::size_t i = 0; i < events.size(); ++i) {
             const Event& e = events[i];
@@ -171,7 +171,8 @@ TEST(LoadBound, FailsForARunThatIsFasterThanItsBusiestLink) {
     EXPECT_NE(faults.first[0].find("precomputation.out"), std::string::npos);
 }
 
-/// What the hit test keeps is altered in the cell that keeps most of it.
+/// The stores of a timed and an untimed loading. `cell()` gives the timed store with the most edges, to be
+/// altered.
 class Stores {
   public:
     explicit Stores(HitTest hit) {
@@ -223,7 +224,7 @@ TEST(StoreCheck, FailsWhereOneBitOfOneVoxelDiffersAndSaysWhere) {
     }
 }
 
-/// By hand from the cost table and the bits of the messages: one triangle in one cell.
+/// Cycles computed by hand from the cost table and the bits of the messages: one triangle in one cell.
 TEST(LoadCycles, OneTriangleInOneCellTakesTheCyclesOfItsMessages) {
     expect_first_elaboration();
     const PictureSettings picture = picture_of(1, 1);
@@ -232,7 +233,7 @@ TEST(LoadCycles, OneTriangleInOneCellTakesTheCyclesOfItsMessages) {
     scene.frame.depth = 8;
     scene.frame.depth_levels = picture.depth_levels;
     scene.objects.resize(1);
-    // A right angle above, so that it is one trapeze.
+    // The horizontal side is on top, so that the triangle is one trapeze.
     scene.polygons.push_back(make_polygon(0, 0, {{0.25, 0.25, 4}, {0.75, 0.25, 4}, {0.25, 0.75, 4}}));
     const LoadPlan plan = plan_loading(scene, picture, settings);
     ASSERT_EQ(plan.counts.trapezes, 1u);
@@ -241,12 +242,12 @@ TEST(LoadCycles, OneTriangleInOneCellTakesTheCyclesOfItsMessages) {
     const MessageBits& bits = machine.environment().bits;
     const auto link = [](int message_bits_) { return Cycle((message_bits_ + 19) / 20); };
     // Sources and viewer leave geometry in cycle 2, the features one cycle of work later when the wires are
-    // free, the polygon after 41 cycles of work.
+    // free, and the polygon after 41 cycles of work.
     Cycle t = 2;
     t = std::max(t + 2, t + link(bits.setup(0)));
     t = std::max(t + 1 + 41, t + link(bits.features));
     t += link(bits.polygon + 3 * bits.vertex) + 20 + link(bits.trapeze) + 8 + link(bits.span) + 12;
-    // The mark has been waiting behind the span for its place in the buffer: a cycle until the distributor
+    // The mark has been waiting behind the span for a place in the buffer: one cycle until the distributor
     // sees it, one on the wires, one in the cell.
     EXPECT_EQ(result.load_cycles, t + 3);
     EXPECT_LE(plan.longest_way.cycles, t);

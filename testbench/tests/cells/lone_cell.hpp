@@ -1,4 +1,4 @@
-// A cell alone, for tests of what it does and counts by itself: the test plays its neighbours.
+// A cell alone, for tests of its behaviour and counters: the test plays its neighbours.
 #pragma once
 
 #include "../truth/hand_made.hpp"
@@ -6,7 +6,7 @@
 
 namespace raycell {
 
-/// Cell (1, 1) of 3x3 in the trace phase, a link to it and one from it on each side.
+/// Cell (1, 1) of a 3x3 array in the trace phase, with a link to it and one from it on each side.
 struct LoneCell {
     explicit LoneCell(const MachineSettings& machine_settings = {}, const CellScene& cell_scene = empty(100))
         : scene(cell_scene), machine(machine_settings), picture(3, 3) {
@@ -37,7 +37,7 @@ struct LoneCell {
     Link& from(Side side) { return *in[std::size_t(side)]; }
     Link& towards(Side side) { return *out[std::size_t(side)]; }
 
-    /// Sends a ray over a link that has room, visible after so many cycles.
+    /// Sends a ray over a link that has room; it is visible after `cycles` cycles.
     void send(Link& link, const Ray& ray, int cycles = 1) {
         RayPacket* packet = environment->pools.rays.take();
         packet->ray = ray;
@@ -48,7 +48,7 @@ struct LoneCell {
         *sent = answer;
         link.send(environment->classes.answer, Message(sent), cycles);
     }
-    /// The ray or answer at the head of a buffer has been read.
+    /// Removes the ray or answer at the head of a buffer and gives it back to its pool.
     void drop(Link& link, int index) {
         const Message front = link.front(index);
         link.pop(index);
@@ -76,7 +76,7 @@ struct LoneCell {
     std::vector<std::unique_ptr<Link>> out;
 };
 
-/// A ray as it comes in over a link.
+/// A ray as it arrives over a link.
 inline Ray lone_ray(const dvec3& position, const dvec3& direction) {
     Ray ray;
     ray.position = position;

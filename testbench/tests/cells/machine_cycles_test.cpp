@@ -5,8 +5,8 @@
 namespace raycell {
 namespace {
 
-/// A row of cells seen by a viewer at infinity. A square in the middle of cell 0, at depth 4, is lit by a
-/// source in the last cell: one shadow ray crosses all cells, and nothing else ever travels.
+/// A row of cells seen by a viewer at infinity. A source in the last cell lights a square in the middle of
+/// cell 0, at depth 4. Only one shadow ray and its verdict travel, over all cells.
 struct Row {
     explicit Row(int cells, double source_y = 0.5) {
         expect_first_elaboration();
@@ -29,11 +29,11 @@ struct Row {
     MachineSettings machine;
 };
 
-/// Shadow ray: type 3, place (x and y a word, z 3 bits more for depths to 8), direction 3 words, reciprocals
-/// of a word and an exponent of 6, reach 1 word, polygon 20, address (home 3 + 0, slot 3 + 1, child 6) 13,
-/// flags 3.
+/// Bits of a shadow ray: type 3, place (x and y one word each, z 3 bits more for depths to 8), direction 3
+/// words, two reciprocals of a word and a 6-bit exponent, reach 1 word, polygon 20, address 13 (home 3 + 0,
+/// slot 3 + 1, child 6), flags 3.
 constexpr int shadow_ray_bits = 3 + (2 * 20 + 23) + 3 * 20 + 2 * 26 + 20 + 20 + 13 + 3;
-/// Verdict: type 3, address 13.
+/// Bits of a verdict: type 3, address 13.
 constexpr int verdict_bits = 3 + 13;
 
 TEST(TimedCycles, AShadowRayAndItsVerdictTakeTheCyclesOfTheCostTable) {
@@ -50,22 +50,22 @@ TEST(TimedCycles, AShadowRayAndItsVerdictTakeTheCyclesOfTheCostTable) {
     t += 20 + 12 + 16 + 8;
     // The shadow ray passes the voxel that it leaves: walk 4, run 2. Then the link.
     t += (4 + 2) + ray_link;
-    // Six empty cells: walk 4 and the link; in the eighth it ends after its walk step.
+    // Six empty cells: walk 4 and the link; in the eighth cell the ray ends after its walk step.
     t += 6 * (4 + ray_link) + 4;
-    // The verdict starts there; six cells route it (1) and send it on; cell 0 delivers it, routed too (1).
+    // The verdict starts there. Six cells route it (1) and send it on; cell 0 routes (1) and delivers it.
     t += verdict_link + 6 * (1 + verdict_link) + 1;
     // Intensity 6 and one lit source 20; cell 0 is the pixel's own.
     t += 6 + 20;
     EXPECT_EQ(result.picture.at(0, 0).cycle, std::uint32_t(t));
     EXPECT_EQ(result.picture.at(0, 0).hops, 14u);
-    // All the others see background: one walk step.
+    // All other pixels see background: one walk step.
     for (int x = 1; x < 8; ++x) EXPECT_EQ(result.picture.at(x, 0).cycle, 5u);
     EXPECT_EQ(result.counters.rays.shadow, 1u);
     EXPECT_EQ(result.counters.rays.ray_hops, 7u);
     EXPECT_EQ(result.counters.rays.return_hops, 7u);
 }
 
-/// What a route cycle more adds tells how many are counted: one for each of seven inputs that the verdict
+/// Raises the route cycles from 1 to 11 to count them: one for each of the seven inputs that the verdict
 /// passes.
 TEST(TimedCycles, EveryHopOfAReturnCostsTheRouteCyclesOfTheTable) {
     Row row(8);
@@ -80,13 +80,13 @@ TEST(TimedCycles, APrecastRayTakesAWalkStepAndItsLinkCyclesPerHop) {
     row.settings.shadows = Shadows::precast;
     const RunResult result = row.run();
     ASSERT_EQ(result.verdict, Verdict::completed);
-    // Its address names a voxel in 10 bits instead of a slot in 4: 240 bits, 12 cycles on the link.
-    // In cell 0: from cycle 1, walk 4 and run 2; the link 12. Six cells of 4 + 12; the eighth ends it,
-    // silently, after 4.
+    // The ray's address names a voxel in 10 bits instead of a slot in 4: 240 bits, 12 cycles on the link.
+    // In cell 0, from cycle 1: walk 4 and run 2; then the link 12. Six cells of 4 + 12; the eighth ends the
+    // ray silently after 4.
     EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 12 + 6 * 16 + 4));
     EXPECT_EQ(result.counters.rays_silent, 1u);
     EXPECT_EQ(result.counters.rays.precast, 1u);
-    // A hit that waits for nothing and sends nothing: test 22, set-up 48, shading 26, without a slot.
+    // A hit that waits for nothing and sends nothing takes no slot: test 22, set-up 48, shading 26.
     EXPECT_EQ(result.picture.at(0, 0).cycle, 1u + 22u + 48u + 26u);
     EXPECT_EQ(result.ray_store_peak, 0);
 }
@@ -99,7 +99,7 @@ TEST(TimedCycles, NarrowLinksTakeLonger) {
     EXPECT_EQ(result.precast_cycles, Cycle(1 + 6 + 35 + 6 * (4 + 35) + 4));
 }
 
-/// A polygon over the whole row, no source.
+/// Loads one polygon over the whole row; no source.
 struct Loading : Row {
     explicit Loading(int cells) : Row(cells) {
         scene.sources.clear();
@@ -107,25 +107,26 @@ struct Loading : Row {
         hand_made::add_rectangle(scene, 0, {0.25, 0.25, 4}, {0, 0.5, 0}, {cells - 0.5, 0, 0});
         settings.stage = RunStage::load;
     }
-    /// Cycle in which the first cell sees the span, and the last one the end-of-scene mark.
+    /// Cycle in which the last cell has taken the end-of-scene mark and loading is complete.
     Cycle expected() const {
         const int columns = 2 * int(std::ceil(std::log2(settings.width)));
         // Link cycles of 111 bits (type 3, viewer 102, faces 6) and 104 (type 3, features 101).
         const int setup = 6;
-        // Geometry, from cycle 1: set-up mark ready in 2 and sent; features wait for the wires until 8,
-        // arrive at 14; the polygon, taken up in 9, needs 1 + 40 and leaves in 50. Type 3, id 20,
-        // plane and slack 147, normals 324 and 4 corners of 3 loading words of 36: 926 bits, 47 cycles.
+        // Geometry starts in cycle 1. The set-up is ready in 2 and sent. The features wait for the wires
+        // until 8 and arrive at 14. The polygon, taken up in 9, needs 1 + 40 and leaves in 50. It has type 3,
+        // id 20, plane and slack 147, normals 324 and 4 corners of 3 loading words of 36: 926 bits, 47
+        // cycles.
         const int polygon_arrives = 2 + setup + 1 + 1 + 40 + 47;
         EXPECT_EQ(polygon_arrives, 97);
         // Precomputation 20; a trapeze is 3 + 20 + 432 + 147 + 324 + 435 = 1361 bits, 69 cycles.
         const int trapeze_arrives = polygon_arrives + 20 + 69;
-        // The row cuts its span in 8; it is 3 + 20 + columns + 180 + 147 + 324 + 435 bits.
+        // The row cuts its span in 8 cycles; a span is 3 + 20 + columns + 180 + 147 + 324 + 435 bits.
         const int span_link = (1109 + columns + 19) / 20;
         const int span_arrives = trapeze_arrives + 8 + span_link;
-        // Each cell makes its voxel in 12 and passes the span on; the last one drops it.
+        // Each cell makes its voxel in 12 cycles and passes the span on; the last one drops it.
         const int span_done = span_arrives + (settings.width - 1) * (12 + span_link) + 12;
-        // With buffers of one message the end-of-scene mark follows once the last buffer is empty: it is sent
-        // in the cycle after, takes one cycle on the wires and one in the cell.
+        // With buffers of one message, the end-of-scene mark follows once the last buffer is empty: it is
+        // sent in the next cycle and takes one cycle on the wires and one in the cell.
         return Cycle(span_done + 1 + 1 + 1);
     }
 };

@@ -1,4 +1,4 @@
-// Cells of somebody else's in a running array: the picture and the cycles are those of the array's own.
+// A user's own cells in a running array: picture and cycles equal those of the array's own cells.
 #include "testbench/own_cell/own_cell.hpp"
 
 #include "elaboration.hpp"
@@ -6,7 +6,7 @@
 namespace raycell {
 namespace {
 
-/// Runs a scene with own cells in all places where no voxel lies, on each kind of network.
+/// Runs a scene with own cells in all places without voxels, on each kind of network.
 class OwnCells : public ::testing::TestWithParam<std::tuple<const char*, Networks, int>> {};
 
 TEST_P(OwnCells, InPlaceOfEmptyOnesChangeNeitherThePictureNorAnyCycle) {

@@ -1,5 +1,5 @@
-// A cell's module between channels of somebody else's, and links as channels for a module that is sensitive
-// to its ports.
+// A cell module between a user's own channels, and links as channels for a module that is sensitive to its
+// ports.
 #include <deque>
 
 #include "lone_cell.hpp"
@@ -7,7 +7,7 @@
 namespace raycell {
 namespace {
 
-/// A plain FIFO with the interfaces of a link: one message at a time on its wires, buffers of a fixed depth.
+/// A plain FIFO with the interfaces of a link: one message at a time on its wires, buffers of fixed depth.
 class PlainChannel : public sc_core::sc_prim_channel, public LinkIn, public LinkOut, public Client {
   public:
     PlainChannel(Scheduler& scheduler, int depth) : scheduler_(scheduler), depth_(std::size_t(depth)) {}
@@ -66,8 +66,8 @@ class PlainChannel : public sc_core::sc_prim_channel, public LinkIn, public Link
     sc_core::sc_event event_;
 };
 
-/// A cell alone, between links or between plain channels, under the same traffic: rays and answers from all
-/// sides, which are sent as soon as they can be and read late.
+/// A cell alone between links or between plain channels, under the same traffic: rays and answers from all
+/// sides, sent as soon as possible and read late.
 struct Traffic {
     Traffic(Scheduler& scheduler, const char* name, Networks networks, bool plain_channels)
         : scene(LoneCell::empty(100)), picture(3, 3) {
@@ -102,7 +102,7 @@ struct Traffic {
         sent_to.push_back(&from);
         read_from.push_back(&to);
     }
-    /// One cycle of the neighbours.
+    /// Plays one cycle of the neighbours.
     void act(Cycle now) {
         for (std::size_t side = 0; side < side_count; ++side) {
             Cycle retry = never;
@@ -177,7 +177,7 @@ TEST_P(OwnChannels, ChangeNothingOfWhatACellBetweenThemDoes) {
 INSTANTIATE_TEST_SUITE_P(OfEachNetwork, OwnChannels,
                          ::testing::Values(Networks::shared, Networks::half, Networks::quadrant));
 
-/// Reads what arrives and sends as much as it can, woken by its ports alone.
+/// Reads what arrives and records when it may send, activated by its ports alone.
 struct Listener : sc_core::sc_module {
     SC_HAS_PROCESS(Listener);
     Listener(sc_core::sc_module_name name, Scheduler& s) : sc_module(name), scheduler(s) {

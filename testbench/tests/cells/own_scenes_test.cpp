@@ -50,7 +50,7 @@ TEST_P(OwnScene, SeesTheSameFirstPolygonsAsTheTruth) {
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
         const Pixel& a = picture.pixels[i];
         const Pixel& b = truth.pixels[i];
-        // Rays through an edge exactly, as on the diagonals of cornell, may take either of its polygons.
+        // A ray exactly through an edge, as on the diagonals of cornell, may hit either of its polygons.
         wrong += a.polygon != b.polygon && !(std::abs(a.depth - b.depth) < 1e-6);
     }
     EXPECT_EQ(wrong, 0) << "of " << picture.pixels.size() << " pixels";

@@ -1,4 +1,4 @@
-// Waveforms: what a dump says is what happened, by a record that link and cell observers make.
+// Waveforms: a dump must equal what link and cell observers recorded.
 #include "cells/probes/probe.hpp"
 
 #include <deque>
@@ -12,17 +12,17 @@ namespace {
 
 constexpr std::uint64_t period_ps = 50000;
 
-/// What a buffer must show, from the sends and pops alone.
+/// The expected signals of a buffer, computed from its sends and pops alone.
 struct BufferRecord {
     struct Entry {
         Cycle visible;
         std::string ray;
     };
-    std::map<Cycle, int> steps;  ///< change of the occupancy by cycle
+    std::map<Cycle, int> steps;  ///< change of occupancy by cycle
     std::vector<std::pair<Cycle, Entry>> sends;
     std::vector<Cycle> pops;
 
-    /// Changes of `values` by cycle, equal ones left out.
+    /// The changes of `values` by cycle, without repeated values.
     static std::vector<vcd::Change> thinned(const std::string& first,
                                             const std::map<Cycle, std::string>& values) {
         std::vector<vcd::Change> changes = {{0, first}};
@@ -44,8 +44,8 @@ struct BufferRecord {
         }
         return thinned("0", values);
     }
-    /// The id of the oldest message that has arrived: message i is the head from its arrival or the pop of
-    /// the one before, whichever is later, until its own pop.
+    /// Ids of the message at the head. Message i is the head from its arrival or the pop of the message
+    /// before, whichever is later, until its own pop.
     std::vector<vcd::Change> head() const {
         std::map<Cycle, std::string> values;
         for (std::size_t i = 0; i < sends.size(); ++i) {
@@ -57,7 +57,7 @@ struct BufferRecord {
     }
 };
 
-/// Records what happens on the links into one cell, and what it does.
+/// Records events on the links into one cell, and the cell's own events.
 struct Record : LinkObserver, CellObserver {
     std::map<std::pair<const Link*, int>, BufferRecord> buffers;
     std::vector<std::tuple<Cycle, CellEvent, std::uint64_t, std::uint32_t>> events;
@@ -121,7 +121,7 @@ struct Probed {
 
 constexpr const char* sides[] = {"east", "south", "west", "north"};
 
-/// Runs a still life and compares every buffer of an inner cell with the record.
+/// Runs still_life and compares every buffer of an inner cell with the record.
 void expect_buffers_as_recorded(Networks networks, int depth) {
     Probed probed("still_life", 16, {{12, 10}, {8, 9}}, ProbeSettings(), [&](MachineSettings& m) {
         m.networks = networks;
@@ -190,7 +190,7 @@ TEST(TimedProbe, ShowsEveryBufferOfFourClassesAsItsSendsAndPopsSay) {
 TEST(TimedProbe, AWindowHasTheWholeRunsValuesInItsCyclesAndNoOthers) {
     const ProbeSettings window{217000, 220345, 1024000000};
     Probed probed("still_life", 16, {{12, 10}}, window, [](MachineSettings&) {});
-    // The second watcher of the same run sees all of it.
+    // A second probe of the same run records all cycles.
     std::FILE* whole_file = std::tmpfile();
     Probe whole({&probed.timed->array().cell(12, 10)}, probed.timed->environment(), whole_file,
                 ProbeSettings(), [](const std::string&) {});
@@ -229,7 +229,8 @@ std::vector<std::pair<int, int>> all_cells(int size) {
     return cells;
 }
 
-/// How many heads wait for each cause at the end of a deadlock; what may pass by itself is none.
+/// Number of heads that wait for each cause at the end of a deadlock. A buffer without a head must show no
+/// stall.
 std::map<std::string, int> causes_at_end(const Probed& probed, const vcd::Dump& dump) {
     std::map<std::string, int> causes;
     for (const auto& [path, changes] : dump.changes) {

@@ -1,5 +1,5 @@
-// At least 1000 random machines: each ends with a true verdict, loses no message, and where it completes it
-// has made the untimed picture, bit for bit. What cells/deadlock/deadlock.md claims to end must end.
+// At least 1000 random machines: each ends with a true verdict and loses no message, and a completed run has
+// the untimed picture, bit for bit. Machines that must end by cells/deadlock/deadlock.md do end.
 #include "../truth/hand_made.hpp"
 #include "elaboration.hpp"
 #include "knot_check.hpp"
@@ -29,7 +29,7 @@ CellScene random_scene(property::Random& random, int width, int height) {
         if (random.chance(0.4)) return hand_made::glass(random.uniform(0.4, 1), random.uniform(0.8, 1.5));
         return hand_made::matt(0.8);
     };
-    if (random.chance(0.6)) {  // facing mirrors: trees that come back to the same cells
+    if (random.chance(0.6)) {  // facing mirrors: trees come back to the same cells
         const double lean = random.uniform(-0.3, 0.3) * width;
         const dvec3 across(0, size.y, 0);
         wall(hand_made::mirror(0.95), {0.02, 0, 0}, across, {lean + 0.3, 0, size.z});
@@ -105,9 +105,9 @@ void draw_machine(Drawn& drawn, property::Random& random) {
     for (const auto& [name, member] : CostTable::entries()) {
         if (random.chance(0.2)) m.costs.*member = std::uint32_t(random.whole(1, 40));
     }
-    m.costs.backoff = std::uint32_t(random.whole(1, 16));  // short: a livelock is waited for
+    m.costs.backoff = std::uint32_t(random.whole(1, 16));  // short, since each livelock must be waited for
     if (random.chance(0.3)) m.stall = random.uniform(0.01, 0.6);
-    // What else only time depends on belongs here.
+    // Further settings that only affect time belong here.
 }
 
 Drawn draw(std::uint64_t seed) {
@@ -130,23 +130,23 @@ Drawn draw(std::uint64_t seed) {
     return drawn;
 }
 
-/// Whether forwarding has no ring: in one row or one column nothing turns.
+/// Whether pure forwarding can't form a ring; in a single row or column no ray turns.
 bool acyclic(const Drawn& drawn) {
     const bool line = drawn.settings.width == 1 || drawn.settings.height == 1;
     const Networks n = drawn.machine.networks;
     return n == Networks::half || n == Networks::quadrant || (n == Networks::split && line);
 }
 
-/// The theorems of cells/deadlock/deadlock.md.
+/// Whether the theorems of cells/deadlock/deadlock.md say that the run ends.
 bool must_end(const Drawn& drawn) {
     const MachineSettings& m = drawn.machine;
-    const bool room_for_all = m.ray_store >= 10000;  // more than rays that ever wait in these arrays
+    const bool room_for_all = m.ray_store >= 10000;  // more than the rays that ever wait in these arrays
     const bool by_generation =
         m.recovery == Recovery::postpone && m.slots != Slots::free && m.ray_store >= drawn.least;
     return acyclic(drawn) && (room_for_all || by_generation);
 }
 
-/// Everything that moving would change, without asking the schedule.
+/// Every value that a movement would change, independent of the scheduler.
 std::vector<std::uint64_t> standing(Machine& machine) {
     const Counters& c = machine.environment().meters.counters;
     std::vector<std::uint64_t> all{c.rays_sent,    c.rays_answered,     c.rays_silent,   c.rays_destroyed,
@@ -163,7 +163,8 @@ std::vector<std::uint64_t> standing(Machine& machine) {
     return all;
 }
 
-/// Far in the future, when every transfer, test and back-off is over, each cell gets three more cycles.
+/// Steps each cell in three cycles far in the future, when every transfer, test and back-off is over, and
+/// expects no change.
 void expect_nothing_can_move(Machine& machine) {
     Scheduler& scheduler = machine.environment().scheduler;
     const Cycle stopped = scheduler.now();
@@ -176,7 +177,7 @@ void expect_nothing_can_move(Machine& machine) {
     scheduler.set_now(stopped);
 }
 
-/// Knots that a search over the graph accepts; everything else waits for one of them.
+/// Expects at least one knot, and an independent search to accept each.
 void expect_knots(const WaitGraph& graph) {
     std::vector<knot_check::Node> nodes;
     for (const WaitGraph::Node& n : graph.nodes()) {
@@ -193,7 +194,7 @@ void expect_conserved(const Environment& environment, bool completed) {
     const std::uint64_t open = c.rays_sent - c.rays_answered - c.rays_silent - c.rays_destroyed;
     const std::uint64_t there = environment.pools.rays.in_use();
     EXPECT_GE(open, there);
-    // The exterior's processors hold answers that can't leave.
+    // The exterior's processors may hold answers that can't leave.
     EXPECT_LE(open, there + std::uint64_t(completed ? 0 : environment.machine.exterior_processors));
     EXPECT_EQ(c.answers_sent - c.answers_delivered, environment.pools.answers.in_use());
     EXPECT_EQ(c.loads_sent, c.loads_delivered);
@@ -231,7 +232,7 @@ void expect_true_verdict(const Drawn& drawn, Machine& machine, const RunResult& 
         case Verdict::interrupted:
             ADD_FAILURE() << "nothing limits or interrupts it here";
     }
-    // In the precast phase no pixel is under way yet; while tracing one at least is missing.
+    // In the precast phase no pixel has started yet; in the trace phase at least one is missing.
     EXPECT_LT(result.counters.pixels_done, pixels);
     EXPECT_FALSE(must_end(drawn)) << name_of(result.verdict);
 }
@@ -257,7 +258,7 @@ TEST_P(TimedRandomMachines, EndWithATrueVerdictAndWhereCompletedTheUntimedPictur
     }
     for (std::size_t i = 0; i < seeds.size(); ++i) {
         SCOPED_TRACE(drawn[i].text + "; " + property::rerun(seeds[i]));
-        // sc_start returns when nobody has anything to do: the machines run one after the other.
+        // sc_start returns when no client has anything to do, so the machines run one after the other.
         const RunResult result = machines[i]->run();
         ++verdicts[name_of(result.verdict)];
         expect_true_verdict(drawn[i], *machines[i], result, goldens[i]);

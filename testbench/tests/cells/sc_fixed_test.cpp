@@ -1,4 +1,4 @@
-// Words of fixed length against SystemC's own fixed-point types, bit for bit.
+// Fixed-point words against SystemC's own fixed-point types, bit for bit.
 #define SC_INCLUDE_FX
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ std::vector<int> word_lengths() {
 
 const std::vector<Rounding> roundings = {Rounding::nearest, Rounding::truncate};
 
-/// What SystemC keeps of `value` in a word of this format.
+/// `value` as SystemC holds it in a word of this format.
 template <class Value>
 sc_fix word_of(const Format& format, const Value& value) {
     const auto mode = format.rounding() == Rounding::nearest ? sc_dt::SC_RND_CONV : sc_dt::SC_TRN;
@@ -39,8 +39,7 @@ std::string label(const Format& format) {
            (format.rounding() == Rounding::nearest ? ", nearest" : ", truncate");
 }
 
-/// A word as the whole number of its last bits; one in four is an end of the range, 0, or next to one of
-/// them.
+/// A word as an integer count of last bits. One in four is an end of the range, 0, or next to one of these.
 std::int64_t raw_word(Random& random, int bits) {
     const std::int64_t end = std::int64_t(1) << (bits - 1);
     if (!random.chance(0.25))
@@ -63,20 +62,20 @@ std::int64_t raw_word(Random& random, int bits) {
 
 double value_of(const Format& format, std::int64_t raw) { return double(raw) * format.step(); }
 
-/// A format of `bits` with anything from 5 integer bits less than none to 5 fraction bits less than none.
+/// A format of `bits` bits, with -5 to bits + 5 integer bits.
 Format random_format(Random& random, int bits, Rounding rounding) {
     const int integer_bits = random.whole(-5, bits + 5);
     return Format(integer_bits, bits - integer_bits, rounding);
 }
 
-/// A format for a result of `fraction_bits`, of which it keeps some or all but one; often too short.
+/// A format of 4 to 48 bits that keeps 1 to 30 fraction bits fewer than the result has; often too short.
 Format result_format(Random& random, int fraction_bits, Rounding rounding) {
     const int bits = random.whole(4, 48);
     const int kept = fraction_bits - random.whole(1, 30);
     return Format(bits - kept, kept, rounding);
 }
 
-/// Calls `check` with a drawn seed, a word length and a rounding, for all of these.
+/// Calls `check` with a seeded random source, for all word lengths and roundings.
 template <class Check>
 void for_formats(std::uint64_t first_seed, Check check) {
     for (const std::uint64_t seed : property::seeds(first_seed, 6)) {
@@ -98,7 +97,7 @@ TEST(FixedWords, HoldAnyValueAsSystemCConvertsIt) {
             SCOPED_TRACE(label(format));
             for (int j = 0; j < 30; ++j) {
                 const double word = value_of(format, raw_word(random, bits));
-                // In the word, at ties, next to them, beyond the ends.
+                // On a word, at ties, next to them, and beyond the ends.
                 for (const double rest : {0.0, 0.5, -0.5, 1.0, -1.0, 1.5, random.uniform(-1, 1)}) {
                     const double value = word + rest * format.step();
                     for (const double x :
@@ -149,7 +148,7 @@ TEST(FixedWords, AddAndSubtractAsSystemCDoes) {
     for_formats(300, [](Random& random, int bits, Rounding rounding) {
         for (int i = 0; i < 40; ++i) {
             const Format a_format = random_format(random, bits, rounding);
-            // Apart by so little that a double holds the sum.
+            // So close that a double holds the sum.
             const int apart = random.whole(-4, 4);
             const Format b_format(a_format.integer_bits() + apart, a_format.fraction_bits() - apart,
                                   rounding);
@@ -237,12 +236,12 @@ const std::vector<Format Formats::*> all_formats = {
 
 const std::vector<Format Formats::*> lengths = {&Formats::unit, &Formats::depth, &Formats::distance};
 
-/// One of `choice`, as the machine has it.
+/// A random one of the formats in `choice`.
 const Format& any_of(Random& random, const Formats& formats, const std::vector<Format Formats::*>& choice) {
     return formats.*choice[std::size_t(random.whole(0, int(choice.size()) - 1))];
 }
 
-/// The arithmetic of one word length with the array as small or as large as it gets.
+/// The arithmetic of one word length for a random array, from the smallest to the largest size.
 Arithmetic arithmetic_of(Random& random, int bits, Rounding rounding) {
     NumberSettings settings;
     settings.word_bits = bits;
@@ -267,7 +266,7 @@ TEST(Arithmetic, SumsProductsAsSystemCDoesWithOneRounding) {
             const Format& c_format = any_of(random, formats, lengths);
             SCOPED_TRACE(label(a_format) + " times " + label(b_format) + " to " + label(to) + " from " +
                          label(c_format));
-            // Next to a tie by a product's last bits: what a double of too few bits would lose.
+            // Next to a tie by a product's last bits: a double with too few bits would lose the difference.
             const bool next_to_tie = random.chance(0.3);
             const auto factor = [&](const Format& format) {
                 return value_of(format, next_to_tie ? random.whole(-2, 2) : raw_word(random, format.bits()));

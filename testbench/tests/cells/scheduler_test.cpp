@@ -1,4 +1,4 @@
-// The time wheel and the ray store: who is woken when, who gets a slot.
+// The time wheel and the ray store: who is woken when, and who gets a slot.
 #include <map>
 #include <set>
 
@@ -42,7 +42,7 @@ TEST(TimedScheduler, WakesInOrderOncePerCycleNearAndFar) {
                 woken[std::size_t(i)].push_back(now);
                 order.push_back(now);
                 if (now < 100000) {
-                    for (int k = random.whole(0, 2); k > 0; --k) {  // itself or others, now and then twice
+                    for (int k = random.whole(0, 2); k > 0; --k) {  // wakes itself or others, sometimes twice
                         const int whom = random.whole(0, count - 1);
                         const Cycle when = now + Cycle(delay());
                         planned[std::size_t(whom)].insert(when);
@@ -65,8 +65,8 @@ TEST(TimedScheduler, WakesInOrderOncePerCycleNearAndFar) {
         sc_core::sc_start();
         std::uint64_t activations = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            // `planned` may have lost a cycle that another call had planned too: what was woken holds all of
-            // it.
+            // `planned` may lack a cycle that another call had planned too, so the woken cycles are a
+            // superset of it.
             const std::set<Cycle> got(woken[i].begin(), woken[i].end());
             EXPECT_EQ(got.size(), woken[i].size()) << "woken twice in a cycle";
             for (const Cycle cycle : planned[i])
@@ -127,12 +127,13 @@ TEST(TimedScheduler, LetsTimeStandStillWhenNobodyHasAnythingToDo) {
     sc_core::sc_start();
     EXPECT_EQ(scheduler.now(), 1000000u);
     EXPECT_EQ(scheduler.activations(), 1u);
-    scheduler.wake(actor, 1000001);  // a second phase goes on from there
+    scheduler.wake(actor, 1000001);  // a second phase continues from there
     sc_core::sc_start();
     EXPECT_EQ(scheduler.now(), 1000001u);
 }
 
-/// Reserved: every generation that may have to wait can always have one slot; the others are for all.
+/// Under `reserved`, every generation that may have to wait can always get one slot; the other slots are for
+/// all.
 TEST(TimedRayStore, GivesSlotsByItsPolicy) {
     for (const std::uint64_t seed : property::seeds(1, 300)) {
         SCOPED_TRACE(property::rerun(seed));

@@ -1,4 +1,4 @@
-// A link in halves against a whole one: nobody at either end can tell them apart.
+// A link in halves against a whole link: neither end can tell the difference.
 #include "cells/channels/split_link.hpp"
 
 #include <algorithm>
@@ -12,7 +12,8 @@ namespace {
 
 using Event = std::tuple<Cycle, char, std::uint64_t>;  ///< cycle, what, ray
 
-/// A sender and a reader of two classes that sometimes rest, always in the same cycles, and what they saw.
+/// A sender and a reader of two classes, and the events they saw. They pause at random, but in the same
+/// cycles for the same seed.
 class Ends {
   public:
     Ends(const std::string& name, Scheduler& scheduler, LinkOut& out, LinkIn& in, MessagePools& from,
@@ -66,7 +67,7 @@ class Ends {
     Cycle rested_ = 0;
 };
 
-/// The end of every cycle: each half learns what the other one did.
+/// The exchange at the end of every cycle: each half learns what the other did.
 struct Meeting {
     Scheduler* scheduler;
     SplitLinks* here;

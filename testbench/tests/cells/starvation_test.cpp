@@ -1,17 +1,17 @@
-// A cell alone under a stream of passing answers that never ends: whatever else wants the same output gets
-// its turn all the same. The argument in cells/deadlock/deadlock.md stands on it.
+// A cell alone under an endless stream of passing answers: everything else that wants the same output still
+// gets its turn. The argument in cells/deadlock/deadlock.md relies on this.
 #include "lone_cell.hpp"
 
 namespace raycell {
 namespace {
 
 struct Passed {
-    int answers = 0;  ///< of the stream
+    int answers = 0;  ///< answers of the stream
     int replies = 0;  ///< answers to the rays
     int rays = 0;
 };
 
-/// A wall across the cell at z = 5: what comes in at z < 5 and goes on in z hits it.
+/// A wall across the cell at z = 5: a ray that comes in at z < 5 and moves in +z hits it.
 CellScene walled() {
     CellScene scene = LoneCell::empty(10);
     const std::uint32_t wall = hand_made::add_object(scene, hand_made::glowing(dvec3(0.5)));
@@ -19,8 +19,8 @@ CellScene walled() {
     return scene;
 }
 
-/// Answers for (2, 1) keep coming in from the west, as fast as the link allows, and the ray again and again
-/// from the south. What leaves to the east is read at once.
+/// Answers for (2, 1) keep coming in from the west, as fast as the link allows, and `ray` again and again
+/// from the south. Messages that leave to the east are read at once.
 Passed beside_a_stream(const MachineSettings& machine, const Ray& ray, Cycle cycles) {
     LoneCell lone(machine, walled());
     const Environment& env = *lone.environment;
@@ -57,7 +57,8 @@ Ray ray_from_south(const dvec3& position, const dvec3& direction) {
     return ray;
 }
 
-/// Width of the links in bits, from one bit per cycle to a verdict in one; and the buffers' depth.
+/// Parameters: width of the links in bits, from one bit per cycle to a whole verdict, and depth of the
+/// buffers.
 class TimedStarvation : public ::testing::TestWithParam<std::tuple<int, int>> {
   protected:
     MachineSettings machine() const {
@@ -67,8 +68,8 @@ class TimedStarvation : public ::testing::TestWithParam<std::tuple<int, int>> {
         return m;
     }
     static constexpr Cycle cycles = 600000;
-    /// Nobody is passed over for much longer than AgingArbiter::patience, 65536 cycles: this is half of the turns
-    /// that leaves.
+    /// At least this many turns: half of cycles / AgingArbiter::patience (65536 cycles), since no message is
+    /// passed over for much longer than that.
     static constexpr int turns = 4;
 };
 
@@ -93,9 +94,9 @@ TEST_P(TimedStarvation, RaysThatPassGetTheirTurn) {
     EXPECT_GT(passed.rays, turns);
 }
 
-/// The cycle in which a ray, tested in cycle `decided`, starts over the output that a stream of answers holds
-/// in every cycle, or the answer that it ends in. `older`, if any, is tested in cycle 100 and waits for the
-/// same.
+/// The cycle in which a ray, or the answer that it ends in, starts over an output that a stream of answers
+/// uses in every cycle. The ray is tested in cycle `decided`. `older`, if given, is tested in cycle 100 and
+/// waits for the same output.
 Cycle wins_in(const Ray& ray, Cycle decided, const Ray* older = nullptr) {
     MachineSettings machine;
     machine.link_bits = 64;  // a verdict takes one cycle
@@ -129,8 +130,8 @@ Cycle wins_in(const Ray& ray, Cycle decided, const Ray* older = nullptr) {
     return won;
 }
 
-/// In which epoch, of 8192 cycles, something is tested tells to the cycle when it goes before all others:
-/// when an epoch begins and it has waited for more than 65536 cycles.
+/// Epochs have 8192 cycles. A message goes before all others from the first epoch that begins when it has
+/// waited for more than 65536 cycles, so the cycle of its test determines when it wins.
 class TimedStarvationBound : public ::testing::TestWithParam<Cycle> {
   protected:
     Cycle expected() const { return ((GetParam() + 65536) / 8192 + 1) * 8192; }
@@ -151,7 +152,7 @@ TEST_P(TimedStarvationBound, ARayGoesNoEarlierBecauseAnOlderOneMakesTheCellLook)
     older.id = 7;
     const Cycle won =
         wins_in(ray_from_south({0.9, 1, 7}, glm::normalize(dvec3(1, -0.1, 0))), GetParam(), &older);
-    // Where both are overdue in the same epoch, the older one goes first.
+    // If both become overdue in the same epoch, the older one goes first.
     const bool same = (GetParam() + 65536) / 8192 == (100 + 65536) / 8192;
     if (same) {
         EXPECT_GT(won, expected());
@@ -160,8 +161,8 @@ TEST_P(TimedStarvationBound, ARayGoesNoEarlierBecauseAnOlderOneMakesTheCellLook)
     }
 }
 
-/// The kind of message that starts first over the east output when both its buffers, full since cycle 1, are
-/// read in cycle `opens`: all that waits for them has been overdue for long.
+/// The kind of message that first starts over the east output when both its buffers, full since cycle 1, are
+/// read in cycle `opens`. By then everything that waits for them has long been overdue.
 Message::Kind first_when_it_opens(LoneCell& lone, const std::function<void(Cycle)>& script) {
     constexpr Cycle opens = 100000;
     const Environment& env = *lone.environment;
@@ -191,7 +192,7 @@ MachineSettings roomy() {
     return machine;
 }
 
-/// A ray that passes is tested so many cycles after an answer came in whose routing takes 50.
+/// An answer whose routing takes 50 cycles comes in; a passing ray is tested `later` cycles after it.
 Message::Kind beside_an_answer(Cycle later) {
     MachineSettings machine = roomy();
     machine.costs.route_return = 50;
@@ -214,7 +215,7 @@ TEST(TimedStarvationOrder, AnAnswerRoutedBeforeARayIsTestedGoesFirst) {
     EXPECT_EQ(beside_an_answer(51), Message::Kind::answer);
 }
 
-/// A wall whose hits need a slot, for the source that it turns its back on, and are complete once set up.
+/// A wall and a source behind it: hits need a slot for that source, but are complete once set up.
 CellScene turned_away() {
     CellScene scene = walled();
     Source behind;
@@ -225,7 +226,8 @@ CellScene turned_away() {
 
 const Ray hits_wall = ray_from_south({0.5, 1, 4.9}, glm::normalize(dvec3(0, -0.1, 1)));
 
-/// A ray that passes comes in so many cycles after one that hits and whose shading takes a thousand.
+/// A ray that hits comes in, and its shading takes a thousand cycles; a passing ray comes in `later` cycles
+/// after it.
 Message::Kind beside_a_reply(Cycle later) {
     MachineSettings machine = roomy();
     machine.costs.shade_setup = 1000;

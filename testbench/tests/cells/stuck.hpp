@@ -1,4 +1,4 @@
-// A run of an own scene that may not end, and what must hold of it however it ends.
+// Runs an own scene that may not end, and checks what must hold however it ends.
 #pragma once
 
 #include <map>
@@ -19,7 +19,7 @@ struct Stuck {
             std::make_unique<Machine>("machine", placed->scene, settings, machine, placed->exterior.get());
         result = timed->run();
     }
-    /// What is not delivered is still there: no message got lost on the way into the deadlock.
+    /// What is not delivered is still there: no message was lost before the deadlock.
     void expect_conserved() {
         const Counters& c = result.counters;
         const std::uint64_t open = c.rays_sent - c.rays_answered - c.rays_silent - c.rays_destroyed;

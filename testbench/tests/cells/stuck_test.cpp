@@ -1,4 +1,4 @@
-// Runs that can't end: they stop all the same, with a verdict and a report (design, section 5).
+// Runs that can't end: they stop with a verdict and a report (design, section 5).
 #include "stuck.hpp"
 
 #include "../truth/hand_made.hpp"
@@ -63,7 +63,7 @@ TEST(TimedVerdict, BeyondTheLimitOfCyclesIsCycleLimit) {
 }
 
 TEST(TimedVerdict, BeyondTheLimitOfCyclesWhileTracingIsCycleLimit) {
-    // A traverse this slow is not through when the limit comes; loading does not use it.
+    // A walk step this slow is not over when the limit comes; loading does not use it.
     Stuck stopped("facing_mirrors", [](PictureSettings& s, MachineSettings& m) {
         s.width = s.height = 8;
         m.costs.walk_step = 1000000;
@@ -102,10 +102,10 @@ TEST(TimedVerdict, ALimitThatIsJustLongEnoughIsNoLimit) {
     PictureSettings settings;
     settings.width = settings.height = 1;
     settings.exterior = ExteriorMode::none;
-    // Loading an empty scene into one cell: the set-up is ready in 2, arrives in 8 (111 bits, 6 cycles),
-    // leaves precomputation in 9, arrives in 15, leaves the row in 16, arrives in 22, is taken in 23. The end
-    // mark leaves the row in 24, when the cell's only place is empty, arrives in 25, is taken in 26. Then the
-    // primary ray: from 27 on a walk step of 4, background in 31.
+    // Loading an empty scene into one cell: the set-up is ready in cycle 2, arrives in 8 (111 bits, 6
+    // cycles), leaves precomputation in 9, arrives in 15, leaves the row in 16, arrives in 22 and is taken in
+    // 23. The end mark leaves the row in 24, when the cell's only buffer place is empty, arrives in 25 and is
+    // taken in 26. The primary ray takes a walk step of 4 from 27 on and returns background in 31.
     MachineSettings exact;
     exact.max_cycles = 31;
     MachineSettings short_by_one;

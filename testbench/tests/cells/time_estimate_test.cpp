@@ -1,4 +1,4 @@
-// Time left: of a machine that runs, and in words.
+// Estimates of the time left, for a running machine and as text.
 #include "testbench/common/time_estimate.hpp"
 
 #include "elaboration.hpp"

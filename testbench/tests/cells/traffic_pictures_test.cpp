@@ -1,4 +1,4 @@
-// Synthetic traffic through the timed machine: the untimed picture, conserved messages, and a verdict.
+// Synthetic traffic through the timed machine: the untimed picture, conserved messages and a verdict.
 #include "elaboration.hpp"
 #include "model/tracing/traffic.hpp"
 
@@ -9,7 +9,7 @@ struct Drawn {
     TrafficSettings traffic;
     PictureSettings picture;
     MachineSettings machine;
-    bool must_end = true;  ///< design, section 5: halves or quadrants, reserved slots enough, postpone
+    bool must_end = true;  ///< design, section 5: `half` or `quadrant`, enough reserved slots, `postpone`
     std::string text;
 };
 

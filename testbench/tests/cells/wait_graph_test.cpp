@@ -1,4 +1,4 @@
-// The analysis of wait-for graphs, against a search that knows only what the words mean.
+// The analysis of wait-for graphs, against a search that uses only the definitions.
 #include "cells/deadlock/wait_graph.hpp"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST(WaitGraph, ARingOfBuffersIsAKnotAndWhatWaitsForItATail) {
 TEST(WaitGraph, ARingThatOneOfSeveralWaysLeadsOutOfIsNoKnot) {
     Built b;
     const Index ring = b.any({1});
-    b.any({ring, 2});  // any slot will do, and one moves
+    b.any({ring, 2});  // any slot will do, and one of them moves
     b.moving();
     b.graph.analyse();
     EXPECT_FALSE(b.graph.deadlocked());

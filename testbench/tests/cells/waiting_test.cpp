@@ -1,4 +1,4 @@
-// What cells count about themselves: waiting by cause, to the cycle, however often a cell is woken.
+// Counters of cells: waiting by cause, exact to the cycle, however often a cell is woken.
 #include "cells/meters/observer_list.hpp"
 #include "lone_cell.hpp"
 #include "testbench/common/ray_watch.hpp"
@@ -6,7 +6,7 @@
 namespace raycell {
 namespace {
 
-/// An empty cell, if no scene is given.
+/// A lone cell; empty unless a scene is given.
 struct EmptyCell : LoneCell {
     using LoneCell::LoneCell;
     void send_answer(Link& link, int home_x, int cycles = 1) {
@@ -15,7 +15,7 @@ struct EmptyCell : LoneCell {
         answer.home_y = 1;
         send(link, answer, cycles);
     }
-    /// What the cell counted; with `restless`, it is woken in each cycle.
+    /// Returns what the cell counted. If `restless`, the cell is woken in every cycle.
     CellStatistics run(Cycle cycles, bool restless, const std::function<void(Cycle)>& script) {
         LoneCell::run(cycles, [&](Cycle now) {
             script(now);
@@ -36,7 +36,7 @@ std::uint64_t all_cycles(const CellStatistics& s) {
 
 const Ray eastwards = lone_ray({0, 0.5, 5}, {1, 0, 0});
 
-/// A ray is decided in cycle 6; the next buffer has room from cycle 51 on; an answer takes the wires from 40
+/// A ray is decided in cycle 6. The next buffer has room from cycle 51 on. An answer uses the wires from 40
 /// to 70.
 void full_then_busy(bool restless) {
     EmptyCell empty;
@@ -124,7 +124,7 @@ TEST(CellWaiting, AHitThatFindsTheStoreFullWaitsForASlotEvenWhereThePortIsTaken)
     CellScene wall = LoneCell::empty(10);
     hand_made::add_rectangle(wall, hand_made::add_object(wall, hand_made::glowing(dvec3(0.5))), {1, 1, 5},
                              {0, 1, 0}, {1, 0, 0});
-    Source behind;  // which the wall turns its back on: hits need a slot all the same
+    Source behind;  // behind the wall: hits need a slot all the same
     behind.position = {1.5, 1.5, 9};
     wall.sources.push_back(behind);
     MachineSettings machine;
@@ -139,7 +139,7 @@ TEST(CellWaiting, AHitThatFindsTheStoreFullWaitsForASlotEvenWhereThePortIsTaken)
         ray.home_y = 1;
         ray.fresh = false;
         if (now == 1 || now == 101) cell.send(cell.from(Side::south), ray);
-        // Verdicts that come home to the slot, one in every cycle.
+        // Verdicts for the slot arrive, one in every cycle.
         Answer verdict;
         verdict.home_x = verdict.home_y = 1;
         verdict.ray_kind = RayKind::shadow;

@@ -52,8 +52,7 @@ Bound bound_of_case(const Case& each, RunStage stage = RunStage::trace) {
     return bound_of(Context(scene, settings), each.machine);
 }
 
-/// The verdict that the table claims for a machine. Its rows are tested in the order of the table, last row
-/// first.
+/// The claim of the table for a machine. The conditions follow the table's rows from the last to the first.
 May claim(const Case& each) {
     const MachineSettings& m = each.machine;
     const int generations = each.max_depth + (each.shadows ? 1 : 0);

@@ -44,7 +44,7 @@ int place_of(const std::string& room, const fs::path& file_in_room) {
     return at == order.end() ? -1 : int(at - order.begin());
 }
 
-/// The includes that break the order, one line each: "file includes target".
+/// One line for each include that breaks the order and for each file in no listed folder.
 std::string offenders(const fs::path& top, const std::string& room) {
     std::string found;
     for (const auto& entry : fs::recursive_directory_iterator(top / room)) {

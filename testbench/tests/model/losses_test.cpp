@@ -51,7 +51,7 @@ TEST(Losses, NamePolygonsWithASingleNormalJustWhereTheVoxelHasOne) {
         const Context context(scene, settings);
         const auto cells = load_array(scene, settings, context.arithmetic);
         const CellStore& store = cells[1 * 4 + 1];
-        if (store.voxels.empty()) continue;  // the triangle's place is between two last bits
+        if (store.voxels.empty()) continue;  // the triangle falls between two words
         const NormalField& field = store.voxels[0].normal;
         const bool single = field.du == dvec3(0) && field.dv == dvec3(0);
         EXPECT_EQ(losses_of(context).single_normals, single ? 1u : 0u) << width;

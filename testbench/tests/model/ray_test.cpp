@@ -160,7 +160,7 @@ TEST(Messages, HaveTheBitsOfTheirFields) {
     const int address = 7 + 6 + 3 + 1 + 6;      // home, slot, child
     const int place = 20 + 20 + (8 + 20);       // z has 8 bits more, for depths to 256
     const int way = 3 * 20 + 2 * (20 + 6);      // direction; reciprocals with exponents
-    const int weight = 20;                      // or the distance limit
+    const int weight = 20;                      // a shadow ray has its reach instead
     const int word = 36;                        // of loading
     const int plane = 3 * word + 2 + 1 + word;  // slopes and offset, axis and sign; slack
     const int edges = 4 * 3 * word + 3;         // up to four, and how many
@@ -185,8 +185,7 @@ TEST(Messages, HaveTheBitsOfTheirFields) {
     // Verdicts on voxels name one of 1024 voxels instead of a slot.
     picture.shadows = Shadows::memo;
     EXPECT_EQ(message_bits(picture, machine, formats).verdict, bits.verdict + 10 - 4);
-    // Gouraud: a span carries an intensity and its increment; the corners carry an intensity each, or
-    // increments along a side.
+    // Gouraud: a span also carries an intensity and its increment, three words each.
     picture.display = Display::gouraud;
     EXPECT_EQ(message_bits(picture, machine, formats).span, bits.span + 6 * word);
 }

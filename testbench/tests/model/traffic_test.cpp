@@ -351,7 +351,7 @@ TEST(StorageBits, OfRegistersFollowTheMachine) {
     sized.machine.link_bits = 256;  // a message takes one cycle: one bit says that the wires are busy
     EXPECT_EQ(bits().credits, plain.credits - 8 * 3);
     sized.machine = {};
-    sized.picture.shadows = Shadows::precast;  // its source and voxel are counters
+    sized.picture.shadows = Shadows::precast;  // the own ray's registers then also hold its source and voxel
     EXPECT_GT(bits().own_ray, plain.own_ray);
 }
 

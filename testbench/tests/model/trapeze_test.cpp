@@ -244,7 +244,7 @@ TEST(Trapezes, AreThoseOfThePlainSweepBitForBitAndInItsOrder) {
         const shapes::Axes axes =
             random.chance(0.2) ? shapes::Axes() : shapes::attitude(random, int(seed % 6));
         auto outline = shapes::lift(any_outline(random), axes, {20, 20, 25});
-        if (random.chance(0.4)) {  // clipping leaves degenerate edges
+        if (random.chance(0.4)) {  // clipping leaves bridges between parts
             const double right = random.uniform(18, 26);
             outline = clip_to_box(outline, {{16, 17, 22}, {right, random.uniform(18, 26), 28}});
         }
