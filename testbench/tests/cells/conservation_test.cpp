@@ -17,7 +17,7 @@ class Machines {
         placed_ = place_own_scene("facing_mirrors", settings_);
         MachineSettings machine;
         machine.buffer_depth = 2;
-        machine.ray_store = waiting_generations(Context(placed_->scene, settings_));  // least that always ends
+        machine.ray_store = waiting_generations(Context(placed_->scene, settings_));  // fewest that end
         machine.exterior_processors = 3;  // few and slow: rays wait in them
         machine.exterior_latency = 500;
         for (std::size_t i = 0; i < count; ++i) {
