@@ -1,4 +1,4 @@
-// How near the machine's picture is to the truth, and that no ray leaks through a wall.
+// PSNR between the machine's picture and the truth, and no ray leaks through a wall.
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -10,9 +10,9 @@ namespace raycell::system_test {
 namespace {
 
 constexpr double least_psnr =
-    60;  ///< at `edge`, dB; measured: 126 at least. One pixel gone wrong costs 20 and more.
+    60;  ///< at `edge`, dB; measured: at least 126. One wrong pixel costs 20 or more.
 
-constexpr double least_in_words = 40;  ///< dB, of 20 bits
+constexpr double least_in_words = 40;  ///< dB, in words of 20 bits
 
 struct AccuracyCase {
     const char* scene;
@@ -23,7 +23,7 @@ void PrintTo(const AccuracyCase& accuracy, std::ostream* out) { *out << accuracy
 
 class Accuracy : public ::testing::TestWithParam<AccuracyCase> {
   protected:
-    /// PSNR and share of wrong first hits at a rung.
+    /// PSNR in dB and share of wrong first hits in percent, at a rung.
     std::pair<double, double> at(const std::string& hit, const std::string& engine = "untimed") const {
         const Json report = workshop.report(
             shared_scenes() / "spd" / (std::string(GetParam().scene) + ".nff"),
@@ -111,7 +111,7 @@ struct Direction {
 };
 void PrintTo(const Direction& d, std::ostream* out) { *out << d.turn << ' ' << d.rise << ' ' << d.roll; }
 
-/// cornell.nff seen from elsewhere: its walls then stand at other angles to the axes of the array.
+/// cornell.nff seen from another direction, so that its walls stand at other angles to the array's axes.
 std::string seen_from(const Direction& d) {
     const double degree = std::acos(-1) / 180;
     const dvec3 centre(0, 1, 0);
@@ -158,7 +158,7 @@ TEST_P(Walls, LetNoPrimaryRayThroughFromTheIntervalUp) {
     const fs::path scene = workshop.write("walls.nff", seen_from(GetParam()));
     for (const std::string viewer : {"scene", "infinity"}) {
         for (const std::string hit : {"interval", "plane", "mask", "edge"}) {
-            // Both arithmetics over both viewers, and every rung.
+            // Each viewer in both arithmetics, and every rung.
             const std::string arithmetic = (viewer == "scene") == (hit == "plane") ? "exact" : "fixed";
             SCOPED_TRACE("viewer " + viewer + ", " + hit + ", " + arithmetic);
             const Json report =

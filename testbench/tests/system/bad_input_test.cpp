@@ -1,4 +1,4 @@
-// Malformed and extreme scenes from end to end: the treatment that scenes/bad/README promises for each.
+// Malformed and extreme scenes, end to end: each gets the treatment that scenes/bad/README promises.
 #include <unistd.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace raycell::system_test {
 namespace {
 
 constexpr double most_seconds = 1;      ///< of processor time, for a refusal; measured: 0.01 s and 14 MB
-constexpr double most_megabytes = 100;  ///< for a picture of 32x32 too; measured: 36 MB at most
+constexpr double most_megabytes = 100;  ///< also for a picture of 32x32; measured: 36 MB at most
 constexpr double most_seconds_to_render = 5;  ///< the promise bounds refusals only; measured: 0.3 s
 
 struct BadCase {
@@ -46,7 +46,7 @@ bool without_nan(const Picture& picture) {
     return true;
 }
 
-/// "FILE:LINE: what" in one line.
+/// Expects "FILE:LINE: what; expected ..." in one line.
 void expect_names_file_and_line(const std::string& message, const std::string& file) {
     const std::size_t at = message.find(file + ":");
     ASSERT_NE(at, std::string::npos) << message;
@@ -68,7 +68,7 @@ TEST_P(BadInput, GetsTheTreatmentThatItsReadmePromises) {
     ASSERT_TRUE(fs::exists(scene));
     const Workshop workshop;
     Words words = {"--cells", "32x32"};
-    // An OBJ has no view, and a note would say so: what is to be silent gets one.
+    // An OBJ has no view, which causes a note. A file that must be read silently gets a view.
     if (bad.treatment == "ACCEPT" && scene.extension() == ".obj") {
         words.push_back("--view");
         words.push_back(workshop.write("view.nff",

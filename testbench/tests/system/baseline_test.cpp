@@ -1,4 +1,4 @@
-// Small pictures kept beside the tests, compared by tolerance: a change that nobody meant shows.
+// Small reference pictures, compared within a tolerance, show unintended changes.
 #include "program.hpp"
 
 namespace raycell::system_test {

@@ -1,4 +1,4 @@
-// name.cells.csv and the activity over time: they add up to the report's totals.
+// name.cells.csv and the activity over time: their sums equal the report's totals.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -54,7 +54,7 @@ Outcome run(const std::string& scene, const Words& words, int exit_code = 0) {
     return done;
 }
 
-/// Completed runs of every sort, and one that is stuck.
+/// Completed runs of several kinds, and one that ends in a deadlock.
 std::vector<Outcome> runs() {
     return {run("still_life.nff", {"--cells", "24x16", "--ray-store", "5"}),
             run("cornell.nff", {"--cells", "16x24", "--shadows", "precast", "--networks", "quadrant",
@@ -71,7 +71,7 @@ TEST(CellsCsv, CellsAddUpToTheReport) {
         const Json& cycles = r.report.at("cycles");
         EXPECT_EQ(sum(c["hops_ray"]), hops.at("ray").get<double>());
         EXPECT_EQ(sum(c["hops_load"]), hops.at("load").get<double>());
-        // The exterior's own answers over the border are no cell's.
+        // Answers that the exterior sends over the border are counted by no cell.
         const double exterior = hops.at("return").get<double>() - sum(c["hops_return"]);
         const double handed_over = r.report.at("rays").at("exterior").get<double>();
         EXPECT_GE(exterior, 0);
@@ -121,8 +121,8 @@ TEST(CellsCsv, WaitingIsTheSumOfItsCauses) {
         SCOPED_TRACE(r.report.at("config").dump());
         const auto& all = r.cells["stall_cycles"];
         EXPECT_GT(sum(all), 0);
-        // At most everything that a cell can hold waits all the time: buffers' heads, slots, their children,
-        // an own ray, an answer in the shading unit.
+        // Upper limit: everything that a cell can hold waits all the time. That is the buffers' heads, the
+        // slots, their children, an own ray and an answer in the shading unit.
         const Json& cycles = r.report.at("cycles");
         const double places = 4 * 5 + 2 * r.report.at("ray_store").at("capacity").get<double>() + 2;
         const double limit =
@@ -209,7 +209,7 @@ TEST(Activity, BucketsAddUpToTheReport) {
         if (r.report.at("verdict") == "completed") {
             EXPECT_EQ(total(a.at("pixels_done")), double(r.cells.at("x").size()));
         }
-        // Slots over all cells and cycles: the last bucket may be shorter than the others.
+        // Slots over all cells and cycles; the last bucket may be shorter than the others.
         const double width = a.at("bucket_cycles");
         double slots = 0;
         for (std::size_t i = 0; i < a.at("slots_used").size(); ++i) {

@@ -1,4 +1,4 @@
-// deadlock_tb from end to end: options, verdicts, exit codes, files.
+// deadlock_tb, end to end: options, verdicts, exit codes, files.
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -84,7 +84,7 @@ TEST(DeadlockTb, LeavesNoGraphOfAnEarlierRunBesideAResultWithoutOne) {
     report(workshop, "");  // expects a.json and a.toml alone
 }
 
-/// The search that the sweep trusts.
+/// Runs the independent search that the sweep uses.
 Finished check_knots(const Workshop& workshop, const fs::path& graph) {
     return workshop.run_program("/usr/bin/python3",
                                 {fs::path(RAYCELL_SOURCE_DIR) / "scripts/studies/deadlock/check_knots.py", graph});
@@ -98,7 +98,7 @@ TEST(DeadlockTb, ItsKnotsAreAcceptedByASearchOfTheSweepsOwn) {
     EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
     EXPECT_TRUE(contains(accepted.out, "knots, accepted")) << accepted.out;
 
-    // A node of a knot that could move, a knot without one of its nodes, and no knot at all.
+    // Altered graphs: a node of a knot that can move, a knot without one of its nodes, and no knot at all.
     const Json json = Json::parse(read_text(graph));
     ASSERT_FALSE(json.at("knots").empty());
     Json moves = json, smaller = json, none = json;

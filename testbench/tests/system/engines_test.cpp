@@ -1,4 +1,4 @@
-// The timed and the untimed machine give the same picture, bit for bit (invariant 1), seen from the outside.
+// The timed and the untimed machine give the same picture, bit for bit (invariant 1), tested on the program.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,7 +8,7 @@
 namespace raycell::system_test {
 namespace {
 
-/// Renders with both engines and compares what must not depend on time.
+/// Renders with both engines and compares everything that must not depend on time.
 void expect_equal_engines(const Workshop& workshop, const fs::path& scene, const Words& words) {
     std::string line;
     for (const std::string& word : words) line += " " + word;
@@ -20,7 +20,7 @@ void expect_equal_engines(const Workshop& workshop, const fs::path& scene, const
     EXPECT_EQ(timed.at("rays"), untimed.at("rays"));
     EXPECT_EQ(timed.at("voxels"), untimed.at("voxels"));
     if (timed.at("deadlock").at("postponed") == 0) {
-        // A postponed ray crosses its links again.
+        // A postponed ray crosses its links again, so hops are only equal without one.
         EXPECT_EQ(timed.at("hops").at("ray"), untimed.at("hops").at("ray"));
         EXPECT_EQ(timed.at("hops").at("return"), untimed.at("hops").at("return"));
         EXPECT_EQ(timed.at("precast").at("hops"), untimed.at("precast").at("hops"));

@@ -1,5 +1,5 @@
-// Golden vectors from end to end: raycell writes what cells of a run are told and do, cell_tb has a cell
-// alone do it again.
+// Golden vectors, end to end: raycell records the inputs and outputs of cells in a run, and cell_tb replays
+// them with a cell alone.
 #include <sstream>
 
 #include "../property.hpp"
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         Recorded{"loaded", "cornell", {"--stage", "load"}, 0}),
     [](const auto& c) { return std::string(c.param.name); });
 
-/// The lines of one record, its events from `first` on.
+/// The lines of one record; its events begin at `first`.
 struct Vectors {
     std::vector<std::string> lines;
     std::size_t first = 0;
@@ -105,7 +105,7 @@ Words split(const std::string& line) {
     return words;
 }
 
-/// Another value of the same kind: whole numbers and mantissas one more, words another one.
+/// Another value of the same kind: a number or mantissa increased by one, or another word.
 std::string other(const std::string& word) {
     if (word.find_first_not_of("-0123456789") == std::string::npos)
         return std::to_string(std::stoll(word) + 1);
@@ -114,7 +114,7 @@ std::string other(const std::string& word) {
     return word == "inf" ? "1" : word == "shadow" ? "memo" : "shadow";
 }
 
-/// Changes one word of a record and replays it.
+/// Changes one word of a record and replays the record.
 class AlteredVectors : public ::testing::Test {
   protected:
     AlteredVectors() {
@@ -183,7 +183,7 @@ TEST_F(AlteredVectors, WhateverACellIsToldItIsCheckedAndNothingBreaks) {
     }
 }
 
-/// The record stays as it is, the cell is another one.
+/// The record is unchanged, but the cell has other costs.
 TEST_F(AlteredVectors, ACellThatTakesAnotherTimeFails) {
     for (const std::string change : {"walk_step=5", "route_return=2", "shade_setup=21", "load_voxel=13"}) {
         Vectors changed = original_;

@@ -1,4 +1,4 @@
-// raycell render and deadlock_tb --granularity, --detail: files that do not depend on who runs the cells.
+// --granularity and --detail of raycell render and deadlock_tb: files do not depend on the host of the cells.
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ const std::vector<Words> every_granularity = {{"--granularity", "auto"},
                                               {"--detail", "5,7", "--detail", "20..23,10..30"},
                                               {"--granularity", "tile", "--detail", "9..12,9..12"}};
 
-/// The events of a golden file, sorted: those of one cycle stand in the order in which its cells ran.
+/// The sorted events of a golden file; within a cycle their order is that in which the cells ran.
 std::string events(const std::string& text) {
     std::vector<std::string> lines;
     std::istringstream stream(text);
@@ -29,7 +29,7 @@ std::string events(const std::string& text) {
     return sorted;
 }
 
-/// What a run writes beside the picture, with whatever may differ left out.
+/// What a run writes beside the picture, without the parts that may differ.
 std::string telling(const Workshop& workshop, const std::vector<std::string>& suffixes) {
     Json report = Json::parse(read_text(workshop.result("a.json")));
     report.erase("model");

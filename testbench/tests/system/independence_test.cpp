@@ -1,4 +1,4 @@
-// The picture does not change with what only concerns time and transport (invariant 2); the schedule does.
+// The picture does not depend on settings of time and transport (invariant 2); the schedule does.
 #include <map>
 #include <set>
 
@@ -53,7 +53,7 @@ TEST_P(PictureOf, DoesNotDependOnTimeAndTransport) {
 }
 
 TEST(ExteriorProcessors, ThatAreNeverBusyCostNeitherTimeNorMemory) {
-    // A step that went through all of them would take minutes for a million; no run here has that many rays
+    // If a step visited all processors, a million of them would take minutes. No run here has that many rays
     // outside.
     const Workshop workshop;
     const Words words = {"--cells", "128x128", "--exterior-processors"};
@@ -92,7 +92,7 @@ TEST(Picture, DoesNotDependOnTimeAndTransportWithPrecastShadowsEither) {
 }
 
 TEST(Picture, DoesNotDependOnWordsAndOperatorsInExactArithmetic) {
-    // There they only say how long messages and operators take.
+    // In exact arithmetic they only determine how long messages and operators take.
     const Workshop workshop;
     std::set<std::string> images;
     std::set<std::string> schedules;
@@ -155,7 +155,7 @@ TEST(Cost, AFasterClockShortensSecondsAndNotCycles) {
                 1e-9);
 }
 
-/// A table with a line of names, as columns.
+/// A CSV table with a header line, by column.
 std::map<std::string, std::vector<std::int64_t>> columns(const std::string& csv) {
     std::istringstream lines(csv);
     std::string line;

@@ -1,5 +1,4 @@
-// What a program is given to read: pipes and devices, saved arrays with wrong fields, polygons with very many
-// corners.
+// Input files: pipes and devices, saved arrays with wrong fields, polygons with very many corners.
 #include <sys/stat.h>
 
 #include <cmath>
@@ -16,7 +15,7 @@ const std::string ball =
     "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 0.1\nresolution 8 8\nl 5 5 5\nf 1 1 1 1 0 1 0 1\ns "
     "0 0 0 1\n";
 
-/// Every place where a program takes a file; the name FILE stands for it.
+/// A program and arguments that read a file; the word FILE stands for its name.
 struct Place {
     std::string program;
     std::string ending;
@@ -80,7 +79,7 @@ TEST(Inputs, ALibraryThatIsAPipeIsNotOpenedAndTheModelIsDrawn) {
     EXPECT_TRUE(contains(finished.err, "'m.mtl' is a device, pipe or socket")) << finished.err;
 }
 
-/// A saved array as the numbers of 64 bits that it consists of, the last a checksum of the others.
+/// A saved array as its 64-bit words; the last is a checksum of the others.
 std::vector<std::uint64_t> numbers_of(const std::string& bytes) {
     std::vector<std::uint64_t> numbers(bytes.size() / 8);
     std::memcpy(numbers.data(), bytes.data(), 8 * numbers.size());
@@ -134,7 +133,7 @@ TEST(Inputs, ASavedArrayWithAWrongNumberAndARightChecksumNeverCrashes) {
     EXPECT_GT(refused, runs / 4);
 }
 
-/// A flat star, as NFF's polygon or, with normals, its patch.
+/// A flat star as an NFF polygon, or, with normals, as a patch.
 std::string star(int corners, bool with_normals) {
     std::string text = (with_normals ? "pp " : "p ") + std::to_string(corners) + "\n";
     for (int i = 0; i < corners; ++i) {
@@ -148,7 +147,7 @@ std::string star(int corners, bool with_normals) {
     return text;
 }
 
-/// What takes the square of the corners is done in seconds, what takes the cube runs into the limit.
+/// Work quadratic in the number of corners takes seconds; cubic work would exceed the time limit.
 TEST(Inputs, APolygonOfManyCornersIsLoaded) {
     const Workshop workshop;
     const std::string view = ball.substr(0, ball.find("s 0"));

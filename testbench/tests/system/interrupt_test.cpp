@@ -1,5 +1,5 @@
-// A run that is told to stop: its verdict, its results so far or none, and no trace of a half-written set.
-// Signals are sent when the program itself shows how far it is.
+// A run that is told to stop: its verdict, its partial results or none, and never a half-written set. Signals
+// are sent when the program's own output shows how far it is.
 #include <array>
 #include <cstdio>
 #include <random>
@@ -16,7 +16,7 @@ Words render(const char* scene, const Words& more) {
     return joined({"render", own_scene(scene).string(), "-o", "results/a"}, more);
 }
 
-/// What becomes of a run that gets the signal once it has said `when`.
+/// Sends the signal once the run has printed `when`; returns how the run ended.
 Finished interrupted(const Workshop& workshop, const std::string& program, const Words& words,
                      const std::string& when, int signal = SIGTERM) {
     Running running(workshop, program, words);
@@ -47,7 +47,7 @@ TEST(Interrupted, WhileLoadingARunKeepsWhatItHas) {
 TEST(Interrupted, WhileTracingARunKeepsWhatItHas) {
     for (const int signal : {SIGINT, SIGHUP}) {
         const Workshop workshop;
-        // Little to load, much to trace.
+        // Little to load and much to trace.
         const Finished finished =
             interrupted(workshop, RAYCELL_PROGRAM,
                         render("facing_mirrors.nff", {"--cells", "96x96", "--link-bits", "1", "--max-depth",
@@ -83,7 +83,7 @@ TEST(Interrupted, TheLoadingPipelineAloneToo) {
     EXPECT_EQ(workshop.results().size(), 5u);
 }
 
-/// What has no cycles to stop between ends without results.
+/// A command without cycles ends without results when interrupted.
 void expect_no_files(const Words& words, const std::string& when) {
     SCOPED_TRACE(words[0]);
     const Workshop workshop;
@@ -143,7 +143,7 @@ TEST(Interrupted, ASecondSignalEndsARunWithoutResults) {
                            {"--cells", "512x512", "--link-bits", "1", "--probe", "1,1", "--golden", "2,2"}));
     ASSERT_TRUE(running.says("load: cycle"));
     EXPECT_TRUE(workshop.results().size() > 1) << "waveforms are written meanwhile";
-    // Stopped, it gets both before it goes on: they are different signals, so none is lost.
+    // While stopped, the program receives both signals. They differ, so neither is lost.
     running.send(SIGSTOP);
     running.send(SIGINT);
     running.send(SIGTERM);
@@ -156,7 +156,7 @@ TEST(Interrupted, ASecondSignalEndsARunWithoutResults) {
 
 // ---- while results are written
 
-/// A set's parts that are the same for every run: all but the report, whose times differ.
+/// The results of a run without the report's `model` section, which differs from run to run.
 std::map<std::string, std::string> fixed_parts(const Workshop& workshop) {
     auto all = workshop.contents();
     const auto report = all.find("a.json");
@@ -168,7 +168,7 @@ std::map<std::string, std::string> fixed_parts(const Workshop& workshop) {
     return all;
 }
 
-/// Signals at random moments while a second run writes its results over a first one's.
+/// Sends signals at random moments while a second run writes its results over those of a first one.
 void expect_one_set_or_the_other(const std::string& program, const Words& first, const Words& second,
                                  int signals) {
     constexpr unsigned seed = 16;
@@ -231,7 +231,7 @@ TEST(Published, ATruthIsOneRunsWheneverASignalComes) {
 
 // ---- a full disk
 
-/// The program with no file allowed to be longer than so many blocks of 512 bytes.
+/// Runs the program with files limited to `blocks` blocks of 512 bytes.
 Finished run_with_short_files(const Workshop& workshop, const std::string& program, const Words& words,
                               int blocks) {
     return workshop.run_program(
@@ -251,7 +251,7 @@ void expect_set_kept_on_a_full_disk(const std::string& program, const Words& fir
         const Finished finished = run_with_short_files(workshop, program, second, blocks);
         EXPECT_EQ(finished.signal, 0);
         EXPECT_EQ(finished.exit_code, 1);
-        if (blocks > 0) {  // standard error is a file, too
+        if (blocks > 0) {  // standard error is a file too
             EXPECT_EQ(finished.error_lines(), 1u) << finished.err;
             EXPECT_TRUE(contains(finished.err, "can't write results/a.")) << finished.err;
             EXPECT_TRUE(contains(finished.err, "File too large")) << finished.err;

@@ -1,4 +1,4 @@
-// A deadlock as the program reports it: what it wrote is checked by a search that knows nothing of the model.
+// A deadlock as the program reports it: a search independent of the model checks what it wrote.
 #include "../cells/knot_check.hpp"
 #include "program.hpp"
 

@@ -1,11 +1,11 @@
-// Loaded arrays: a run that starts with a saved one tells the same as the run that loaded it.
+// Loaded arrays: a run that starts from a saved array reports the same as the run that saved it.
 #include "program.hpp"
 
 namespace raycell::system_test {
 namespace {
 
-/// A report without what may differ: wall times, the options themselves and, in one that is as if it had
-/// loaded, whose loading it was and its activity over time.
+/// A report without the parts that may differ: wall times, the options, and, if `as_if_loaded`, the source of
+/// the loading and its activity over time.
 Json told(const Workshop& workshop, const std::string& name, bool as_if_loaded = true) {
     Json json = Json::parse(read_text(workshop.result(name + ".json")));
     json.erase("model");
@@ -47,7 +47,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Words{"--shadows", "memo", "--display", "gouraud", "--word-bits", "27"},
                       Words{"--stage", "load"}, Words{"--voxel-capacity", "2", "--exterior", "none"}));
 
-/// Keeps what `saving` loads, has `other` use it, and expects the tale of a whole run of `other`.
+/// Saves the array that `saving` loads, runs `other` with it, and expects the report of a whole run of
+/// `other`.
 void expect_other_trace(const Words& saving, const Words& other) {
     SCOPED_TRACE(other.front());
     const Workshop workshop;
@@ -88,7 +89,7 @@ TEST(LoadedArrayFile, OfOtherBuffersLinksOrCostsServesWithAWarning) {
     }
 }
 
-/// One message that names the option, exit code 1, and nothing in the results but the array.
+/// Expects one message that names the option, exit code 1, and no results but the array.
 void expect_refused(const Workshop& workshop, const Words& words, const std::string& said) {
     SCOPED_TRACE(said);
     const Finished finished = render(workshop, words, "b");

@@ -1,4 +1,4 @@
-// loading_tb from end to end: checks, figures, exit codes, files.
+// loading_tb, end to end: checks, figures, exit codes, files.
 #include <algorithm>
 #include <sstream>
 
@@ -20,7 +20,7 @@ std::vector<std::vector<std::string>> table(const fs::path& path) {
     return lines;
 }
 
-/// What must hold in every report of a run that came to its end.
+/// Expects what must hold in every report of a completed run.
 void expect_sound_loading(const Json& json) {
     for (const char* name : {"stores", "content", "order", "promptness", "conservation", "bound"}) {
         EXPECT_EQ(json.at("checks").at(name).at("faults"), 0) << name << json.at("checks").at(name);
@@ -114,7 +114,8 @@ TEST(LoadingTb, ChecksTeapotAtTheDefaults) {
     const Json json = report(workshop, {teapot});
     EXPECT_EQ(json.at("bound").at("of"), "precomputation.out");
     EXPECT_GT(json.at("bound").at("efficiency").get<double>(), 0.8);
-    // Trapezes are wide: twice the buffer lets a row take the next one while it sends the last one on.
+    // Trapezes are wide: with twice the buffer, a row takes the next one while it still sends the last one
+    // on.
     const Json deeper = report(workshop, {teapot, "--buffer", "2"});
     EXPECT_GT(deeper.at("bound").at("efficiency").get<double>(),
               json.at("bound").at("efficiency").get<double>());

@@ -1,5 +1,5 @@
-// Where results can't go, what they must not overwrite, and what becomes of a program that is out of memory
-// or can't print: one clear message, the documented exit code, nothing lost.
+// Unwritable results, files that must not be overwritten, lack of memory, unwritable output: one clear
+// message, the documented exit code, nothing lost.
 #include <algorithm>
 
 #include "program.hpp"
@@ -14,7 +14,7 @@ void expect_one_message(const Finished& finished, const std::string& part) {
     EXPECT_TRUE(contains(finished.err, part)) << "no '" << part << "' in: " << finished.err;
 }
 
-// ---- found before the run: a scene that isn't there is not even looked for
+// ---- found before the run, before the scene is even looked for
 
 TEST(Output, AFolderWhereAnyFileShouldGoIsFoundBeforeTheRun) {
     const Workshop workshop;
@@ -57,7 +57,7 @@ TEST(Output, ANameThatIsTooLongIsFoundBeforeTheRun) {
     EXPECT_TRUE(workshop.results().empty());
 }
 
-// ---- what is read is not overwritten
+// ---- input files are not overwritten
 
 class Spared : public ::testing::Test {
   protected:
@@ -138,7 +138,7 @@ TEST_F(Spared, GoldenVectorsThatAreReplayed) {
 
 // ---- standard output
 
-/// The program with its standard output led elsewhere by a shell.
+/// Runs the program with its standard output redirected by a shell.
 Finished run_led(const Workshop& workshop, const std::string& where, const std::string& program,
                  const Words& words) {
     return workshop.run_program("/bin/sh", joined({"-c", "exec \"$0\" \"$@\" " + where, program}, words));
@@ -192,7 +192,7 @@ TEST(StandardOutput, WhoseReaderIsGoneIsAnError) {
                                          "render", own_scene("cornell.nff").string(), "--cells", "8x8",
                                          "--watch-pixel", "1..4,1..4", "-o", "results/a"});
     const std::string code = read_text(workshop.path() / "code");
-    EXPECT_TRUE(code == "1\n" || code == "0\n") << code << finished.err;  // 0: read before it was gone
+    EXPECT_TRUE(code == "1\n" || code == "0\n") << code << finished.err;  // 0: written before it was gone
 }
 
 // ---- memory
@@ -218,7 +218,7 @@ TEST(Memory, ThatRunsOutIsSaidInOneMessage) {
             SCOPED_TRACE(program + " " + words[0] + " with " + std::to_string(megabytes) + " MB");
             const std::string limit =
                 "ulimit -v " + std::to_string(megabytes * 1000) + "; exec \"$0\" \"$@\"";
-            // What can't even be loaded says so by itself.
+            // A program that can't even be loaded reports that itself.
             if (workshop.run_program("/bin/sh", {"-c", limit, program, "--help"}).exit_code != 0) continue;
             const Finished finished = workshop.run_program("/bin/sh", joined({"-c", limit, program}, words));
             if (finished.exit_code == 0 || finished.exit_code == 4) break;  // enough

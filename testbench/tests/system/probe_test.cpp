@@ -1,4 +1,4 @@
-// raycell render --probe, --window, --vcd-on-deadlock: files, refusals, and that watching changes nothing.
+// --probe, --window and --vcd-on-deadlock of raycell render: files, refusals; watching changes nothing.
 #include <set>
 
 #include "../vcd.hpp"
@@ -22,7 +22,7 @@ std::set<std::string> cells_of(const vcd::Dump& dump) {
     return cells;
 }
 
-/// Paths that a save file shows, without their ranges.
+/// The signal paths that a save file shows, without their ranges.
 std::vector<std::string> shown(const std::string& save_file) {
     std::vector<std::string> paths;
     std::istringstream lines(save_file);
@@ -124,7 +124,7 @@ TEST(Probe, OfADeadlockShowsSomeCellsAndTheCyclesBeforeIt) {
     const auto cells = cells_of(dump);
     EXPECT_GE(cells.size(), 2u);
     EXPECT_LT(cells.size(), 24u * 24u);
-    // Every cell shown stands still with something in it.
+    // Every cell shown holds something at the end.
     std::set<std::string> holding;
     for (const auto& [path, changes] : dump.changes) {
         const auto at = path.find(".occupancy");

@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Starts a program in `folder` with its standard streams in files there; returns the child's id.
+/// Starts a program in `folder` with its standard streams redirected to files there; returns the child's id.
 pid_t start_child(const std::string& program, const Words& words, const fs::path& folder,
                   const std::string& errors = "stderr.txt") {
     posix_spawn_file_actions_t actions;
@@ -43,7 +43,7 @@ pid_t start_child(const std::string& program, const Words& words, const fs::path
     return child;
 }
 
-/// Whether the child has ended; how goes into `finished`.
+/// Whether the child has ended; if so, sets the exit fields of `finished`.
 bool has_ended(pid_t child, Finished& finished) {
     int status = 0;
     rusage usage{};
@@ -52,13 +52,13 @@ bool has_ended(pid_t child, Finished& finished) {
         return double(time.tv_sec) + double(time.tv_usec) * 1e-6;
     };
     finished.seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-    finished.megabytes = double(usage.ru_maxrss) * 1024e-6;  // Linux counts it in kilobytes of 1024
+    finished.megabytes = double(usage.ru_maxrss) * 1024e-6;  // Linux counts units of 1024 bytes
     if (WIFEXITED(status)) finished.exit_code = WEXITSTATUS(status);
     if (WIFSIGNALED(status)) finished.signal = WTERMSIG(status);
     return true;
 }
 
-/// Waits for the child, killing it at the deadline; `listen` is called now and then.
+/// Waits for the child and kills it at the deadline. Calls `listen` now and then.
 void await(pid_t child, double limit_seconds, Finished& finished, const std::function<void()>& listen = {}) {
     const auto deadline = Clock::now() + std::chrono::duration<double>(limit_seconds);
     while (!has_ended(child, finished)) {
@@ -154,7 +154,7 @@ std::map<std::string, std::string> Workshop::contents() const {
 }
 
 bool Workshop::writes(const std::string& name) const {
-    std::error_code gone;  // between the two looks
+    std::error_code gone;  // the file may disappear between the two looks
     for (const auto& entry : fs::directory_iterator(path_ / "results")) {
         if (contains(entry.path().filename(), name + ".part") && entry.file_size(gone) > 0 && !gone)
             return true;
@@ -169,7 +169,7 @@ void Running::start(const Workshop& workshop, const std::string& program, const 
         throw std::runtime_error("no terminal can be had");
     fcntl(terminal_, F_SETFL, O_NONBLOCK);
     const std::string name = ptsname(terminal_);
-    kept_open_ = open(name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);  // without anybody there, reading fails
+    kept_open_ = open(name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);  // else reading our end would fail
     child_ = as_error ? start_child(program, words, folder_, name)
                       : start_child(program, joined(words, {name}), folder_);
 }

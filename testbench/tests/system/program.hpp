@@ -1,4 +1,4 @@
-// The program under test as a child process, and what its tests share.
+// The program under test as a child process, and helpers for its tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,17 +19,17 @@ using Json = nlohmann::json;
 using Words = std::vector<std::string>;
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr bool sanitized = true;  ///< limits of time and memory mean nothing then
+constexpr bool sanitized = true;  ///< time and memory limits mean nothing then
 #else
 constexpr bool sanitized = false;
 #endif
 
-/// What became of a child process.
+/// How a child process ended.
 struct Finished {
-    int exit_code = -1;  ///< -1 where a signal ended it
+    int exit_code = -1;  ///< -1 if a signal ended it
     int signal = 0;
     bool timed_out = false;  ///< it was killed because it took longer than allowed
-    double seconds = 0;      ///< of processor time: other work beside it hardly changes it
+    double seconds = 0;      ///< processor time, which other work on the machine hardly changes
     double megabytes = 0;    ///< largest resident set, 10^6 bytes
     std::string out;
     std::string err;
@@ -37,7 +37,7 @@ struct Finished {
     std::size_t error_lines() const;
 };
 
-/// Wall seconds after which a child hangs, however busy the machine is.
+/// Wall seconds after which a child counts as hanging, however busy the machine is.
 constexpr double ages = 900;
 
 /// A fresh folder in which the program is started, removed at the end. Results go to its `results` folder,
@@ -49,14 +49,15 @@ class Workshop {
     Workshop(const Workshop&) = delete;
     Workshop& operator=(const Workshop&) = delete;
 
-    /// Runs `raycell words...`; after `limit_seconds` the child is killed.
+    /// Runs `raycell words...`; kills the child after `limit_seconds` of wall time.
     Finished run(const Words& words, double limit_seconds = ages) const;
-    /// The same for another program, by its path.
+    /// The same for another program, given by its path.
     Finished run_program(const std::string& program, const Words& words, double limit_seconds = ages) const;
     /// Runs `raycell render scene --quiet -o results/NAME words...`.
     Finished render(const fs::path& scene, const Words& words, const std::string& name = "a",
                     double limit_seconds = ages) const;
-    /// The same, expected to end with `exit_code`; returns NAME.json, checked for sense, and null without it.
+    /// The same, expected to end with `exit_code`. Returns NAME.json after checking it, or null if it is
+    /// missing.
     Json report(const fs::path& scene, const Words& words, int exit_code = 0,
                 const std::string& name = "a") const;
 
@@ -65,11 +66,11 @@ class Workshop {
     fs::path result(const std::string& name) const { return path_ / "results" / name; }
     /// Names of the files in results/, sorted.
     std::vector<std::string> results() const;
-    /// Their contents, by name.
+    /// The contents of these files, by name.
     std::map<std::string, std::string> contents() const;
-    /// Whether one of that name is being written, or waits to get it.
+    /// Whether a file of this name is being written or waits to be renamed.
     bool writes(const std::string& name) const;
-    /// The same without what is there only where something waits, locked or was destroyed.
+    /// Like results(), without files that exist only if something waited, locked or was destroyed.
     std::vector<std::string> usual_results() const;
 
   private:
@@ -80,7 +81,7 @@ class Workshop {
 class Running {
   public:
     Running(const Workshop& workshop, const std::string& program, const Words& words);
-    /// The same with the terminal's name as the last word, and not as standard error.
+    /// The same, but the terminal's name is the last word and standard error is not the terminal.
     struct NamedTerminal {};
     Running(const Workshop& workshop, const std::string& program, const Words& words, NamedTerminal);
     ~Running();
@@ -88,12 +89,12 @@ class Running {
     Running& operator=(const Running&) = delete;
 
     pid_t id() const { return child_; }
-    /// Waits until it has said this; false if it ended without.
+    /// Waits until the child has printed `part`; false if it ended without.
     bool says(const std::string& part);
-    /// Waits until this is so; false if it ended without.
+    /// Waits until `there` is true; false if the child ended before.
     bool waits_for(const std::function<bool()>& there);
     void send(int signal) const { kill(child_, signal); }
-    /// Waits for its end.
+    /// Waits for the end of the child.
     Finished finish();
 
   private:
@@ -114,12 +115,12 @@ inline bool contains(const std::string& text, const std::string& part) {
 }
 Words joined(Words first, const Words& second);
 
-/// The project's own scenes, and those that lie beside the project where they do.
+/// Folders of scenes: the project's own, and the data beside the project, if present.
 fs::path own_scene(const std::string& name);
 fs::path shared_scenes();
 
-/// What must hold in every report, whatever the options: every key of the format is there, messages are
-/// conserved, sums are sums, nothing is fuller than it can be.
+/// Expects what must hold in every report: every key of the format is there, messages are conserved, sums are
+/// right, and nothing is fuller than it can be.
 void expect_sound(const Json& report);
 
 /// The picture's hash in a report.

@@ -1,11 +1,11 @@
-// What must hold in every report.
+// Checks that hold for every report.
 #include "program.hpp"
 
 namespace raycell::system_test {
 
 namespace {
 
-/// The keys that users' scripts rely on.
+/// Keys that users' scripts rely on.
 const char* const keys[] = {
     "/verdict",
     "/config",
@@ -117,7 +117,7 @@ void expect_messages_conserved(const Json& report, bool ended, bool timed) {
         count(rays, "sent") - count(rays, "answered") - count(rays, "silent") - count(rays, "destroyed");
     const std::int64_t answers_on_their_way = count(answers, "sent") - count(answers, "delivered");
     const std::int64_t loads_on_their_way = count(loads, "sent") - count(loads, "delivered");
-    if (timed) {  // the untimed machine's rays are not sent
+    if (timed) {  // the untimed machine does not send its rays
         EXPECT_EQ(on_their_way, count(rays, "in_flight")) << rays;
         EXPECT_EQ(answers_on_their_way, count(answers, "in_flight")) << answers;
         EXPECT_EQ(loads_on_their_way, count(loads, "in_flight")) << loads;
@@ -140,7 +140,7 @@ void expect_share(const Json& value) {
     EXPECT_LE(value.get<double>(), 1) << value;
 }
 
-/// A cell's bits are those of its parts.
+/// The bits of a cell must be the sum of its parts.
 void expect_sums(const Json& bits) {
     std::int64_t registers = 0;
     for (const auto& [name, value] : bits.at("registers").items()) {

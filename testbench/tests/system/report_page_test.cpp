@@ -1,4 +1,4 @@
-// scripts/study report: a run as one page that needs nothing from outside.
+// scripts/study report: a run as one self-contained page.
 #include "program.hpp"
 
 namespace raycell::system_test {

@@ -1,4 +1,4 @@
-// A run can be repeated: from the configuration that it wrote, and bit for bit.
+// A run can be repeated from the configuration that it wrote, bit for bit.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -8,7 +8,7 @@
 namespace raycell::system_test {
 namespace {
 
-/// Names of the long options that `raycell render --help` lists, but for --help and --config.
+/// Names of the long options in `raycell render --help`, without --help and --config.
 std::set<std::string> options_in_help() {
     const Workshop workshop;
     std::istringstream help(workshop.run({"render", "--help"}).out);
@@ -25,7 +25,7 @@ std::set<std::string> options_in_help() {
     return names;
 }
 
-/// Keys of a configuration file as the program writes it, one a line.
+/// Keys of a configuration file as the program writes it, one per line.
 std::set<std::string> keys_of(const std::string& toml) {
     std::istringstream lines(toml);
     std::set<std::string> keys;
@@ -44,7 +44,7 @@ TEST(Reproduction, TheConfigurationHoldsEveryOption) {
     const Workshop workshop;
     const Json report = workshop.report(own_scene("cornell.nff"), {"--cells", "4x4"});
     std::set<std::string> options = options_in_help();
-    options.erase("rank-rows");  // no result depends on it, nor on the number of ranks, which mpirun gives
+    options.erase("rank-rows");  // results depend neither on it nor on the number of ranks, which mpirun sets
     EXPECT_GE(options.size(), 30u);
     EXPECT_EQ(keys_of(read_text(workshop.result("a.toml"))), options);
     std::set<std::string> in_report;
@@ -64,7 +64,7 @@ TEST(Reproduction, ATracedRunFromItsConfigurationIsTheSameRun) {
         {"--hit", "mask", "--shadows", "memo", "--exterior", "none", "--ray-store", "5", "--buffer", "3"},
         {"--arithmetic", "exact", "--normal-offset", "-1"},
         {"--normal-offset", "-1", "--word-bits", "9"},
-        // Nothing at its default, with numbers that need all their digits.
+        // No option at its default, and numbers that need all their digits.
         {"--view",
          view,
          "--viewer",
@@ -245,7 +245,7 @@ TEST(Precedence, TheCommandLineOverridesTheConfigurationInEveryKindOfOption) {
                         "walk_step=8",
                         "--truth=false",
                         "--min-weight=0.5"};
-    // Wherever --config stands.
+    // --config may stand anywhere.
     for (const Words& words : {joined({"render", "--config", "run.toml"}, line),
                                joined(joined({"render"}, line), {"--config=run.toml"})}) {
         const Finished finished = workshop.run(words);

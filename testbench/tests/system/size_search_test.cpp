@@ -1,4 +1,4 @@
-// The search of `raycell size` alone, on made-up machines, against trying every one of them.
+// The search of `raycell size` on made-up machines, compared with trying all of them.
 #include "testbench/raycell/size_search.hpp"
 
 #include <atomic>
@@ -14,8 +14,8 @@ const std::vector<HitTest> rungs = {HitTest::depth, HitTest::interval, HitTest::
                                     HitTest::edge};
 const std::vector<int> all_levels = {1000, 512, 256, 128, 64, 32, 16, 8, 4, 2, 1};
 
-/// Machines whose accuracy grows with the words and, at rungs with a plane, with the levels, but for a noise
-/// that depends on the setting alone and is smaller than what the search allows for.
+/// Machines whose accuracy grows with the word length and, at rungs with a plane, with the depth levels. The
+/// noise depends only on the setting and is smaller than what the search allows for.
 class MadeUpModel : public SizeModel {
   public:
     explicit MadeUpModel(std::uint64_t seed, double noise_db = 0.45) : seed_(seed), noise_db_(noise_db) {
@@ -45,7 +45,7 @@ class MadeUpModel : public SizeModel {
         for (const auto& [voxels, edges] : cells_) {
             const int few = s.hit == HitTest::depth ? (voxels + 1) / 2 : voxels;
             CellStore cell;
-            // Short words take in more, as their tolerances are wider.
+            // Short words store more voxels, as their tolerances are wider.
             cell.voxels.resize(std::size_t(few * (1 + hair_ * std::exp2(8 - s.word_bits))));
             const double growth = 1 + edge_growth_ * double(coarseness(s));
             if (s.hit == HitTest::edge) cell.edges.resize(std::size_t(edges * growth));
@@ -74,7 +74,7 @@ class MadeUpModel : public SizeModel {
         return index;
     }
 
-    /// dB without noise.
+    /// PSNR in dB without noise.
     double smooth(const SizeSetting& s) const {
         const bool box = s.hit == HitTest::depth || s.hit == HitTest::interval;
         double limit = limit_[std::size_t(s.hit)];
@@ -85,7 +85,7 @@ class MadeUpModel : public SizeModel {
         return -10 * std::log10(std::pow(10, -limit / 10) + std::pow(10, -words / 10));
     }
 
-    /// -1 to 1
+    /// Noise from -1 to 1.
     double noise(const SizeSetting& s) const {
         std::uint64_t key = seed_;
         for (const int part : {int(s.hit), int(s.normals), int(s.shadows), s.depth_levels, s.word_bits}) {
@@ -107,7 +107,7 @@ class MadeUpModel : public SizeModel {
     std::vector<std::pair<int, int>> cells_;
 };
 
-/// By trying every setting.
+/// The least cost, found by trying every setting.
 std::optional<SizeCost> least_cost(const MadeUpModel& model, const SizeGoal& goal) {
     std::optional<SizeCost> least;
     for (const HitTest hit : rungs) {
@@ -116,7 +116,7 @@ std::optional<SizeCost> least_cost(const MadeUpModel& model, const SizeGoal& goa
                 for (const int levels : all_levels) {
                     for (int words = least_word_bits; words <= most_word_bits; ++words) {
                         SizeTrial trial = model.run({hit, normals, shadows, levels, words});
-                        // The picture of precast is that of memo.
+                        // precast and memo give the same picture.
                         if (shadows == Shadows::memo) {
                             trial.accuracy =
                                 model.run({hit, normals, Shadows::precast, levels, words}).accuracy;
@@ -194,7 +194,7 @@ TEST(SizeSearch, WhereItsAssumptionsFailStillNothingOneStepSmallerMeetsTheGoal) 
     }
 }
 
-/// Machines whose accuracy has nothing to do with their size.
+/// Machines whose accuracy is random and independent of their size.
 class RandomModel : public MadeUpModel {
   public:
     RandomModel(std::uint64_t seed, double most_db) : MadeUpModel(seed), seed_(seed), most_db_(most_db) {}
@@ -239,7 +239,7 @@ TEST(SizeSearch, WhateverTheTableSaysTheFoundIsTheSmallestRowThatMeetsAndNoneIsS
     EXPECT_TRUE(in_vain > 0 && in_vain < 200) << "else this tests nothing: " << in_vain;
 }
 
-/// The longest words miss by far, shorter ones of the same setting are lucky.
+/// The longest words miss the goal by far; shorter words of the same setting are lucky.
 TEST(SizeSearch, FindsShorterWordsThatAreLuckyBeforeItSaysNone) {
     class LuckyModel : public MadeUpModel {
       public:

@@ -1,4 +1,4 @@
-// raycell size: the machine that it finds is accurate enough, and none one step smaller is.
+// raycell size: the machine found is accurate enough, and no machine one step smaller is.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -10,7 +10,7 @@ namespace {
 
 const Words small_array = {"--cells", "24x18"};
 
-/// Runs `raycell size` on an own scene, expected to end with `exit_code`; returns its JSON.
+/// Runs `raycell size` on an own scene and expects `exit_code`; returns its JSON.
 Json size(const Workshop& workshop, const std::string& scene, const Words& words, int exit_code = 0) {
     const Finished finished = workshop.run(joined(
         {"size", own_scene(scene).string(), "--quiet", "-o", "results/s"}, joined(small_array, words)));
@@ -23,7 +23,7 @@ Json size(const Workshop& workshop, const std::string& scene, const Words& words
     return Json::parse(read_text(workshop.result("s.json")));
 }
 
-/// The found machine, but for `words`, rendered beside the truth.
+/// Renders the machine found, changed by `words`, and the truth; returns the report.
 Json rendered(const Workshop& workshop, const Words& words, int exit_code = 0) {
     const Finished finished = workshop.run(
         joined({"render", "--config", "results/s.toml", "--truth", "--quiet", "-o", "results/a"}, words));
@@ -54,7 +54,7 @@ void expect_rendered_as_found(const Workshop& workshop, const Json& sized) {
     EXPECT_EQ(schedule(report), schedule(sized.at("timed")));
 }
 
-/// Options of render that make one thing about the found machine smaller.
+/// Options of render that each make one property of the machine found smaller.
 std::vector<Words> steps_down(const Json& found) {
     std::vector<Words> steps;
     const int words = found.at("word_bits");
@@ -73,7 +73,7 @@ std::vector<Words> steps_down(const Json& found) {
     return steps;
 }
 
-/// Whether the table has what was rendered, with the same accuracy.
+/// Whether the table lists the setting of a rendered report, with the same accuracy.
 bool was_tried(const Json& sized, const Json& report) {
     const Json& config = report.at("config");
     const auto same = [&](const Json& trial) {
@@ -105,7 +105,7 @@ void expect_smallest(const Workshop& workshop, const Json& sized) {
 }
 
 TEST(Size, TheMachineFoundReachesThePsnrAndNoneOneStepSmallerDoes) {
-    // The least is reached by a box of depth levels, the last only with edges and linear normals.
+    // The lowest goal is reached at a rung without planes, the highest only with edges and linear normals.
     for (const std::string psnr : {"14", "25", "33", "45"}) {
         SCOPED_TRACE(psnr + " dB");
         const Workshop workshop;
@@ -163,7 +163,7 @@ TEST(Size, AGoalOutOfReachIsSaidPlainlyWithTheNearestAndNoConfigurationIsWritten
     EXPECT_EQ(workshop.results(), (std::vector<std::string>{"s.csv", "s.json"}));
 }
 
-/// Whatever is lucky there: what the text says is what its table says.
+/// Accuracy may be a matter of luck in this scene, but the text must agree with the table.
 TEST(Size, NoneIsSaidOnlyWhereNoRowOfTheTableMeetsTheGoal) {
     SKIP_WITHOUT_SHARED_SCENES();
     for (const std::string psnr : {"31", "34", "36", "60", "150", "200"}) {
@@ -280,7 +280,7 @@ TEST(Size, WrongScenesPlacesAndOptionsAreRefused) {
     expect_refused(joined(goal, {"none.nff", "-o", "results/s"}), "none.nff");
     expect_refused(joined(goal, {scene, "-o", "missing/s"}), "--output missing/s");
     expect_refused(joined(goal, {scene, "-o", "results/s", "--depth", "0"}), "--depth: ");
-    // What is searched for can't be given.
+    // Options that the search determines can't be given.
     expect_refused(joined(goal, {scene, "-o", "results/s", "--hit", "edge"}), "--hit");
     expect_refused(joined(goal, {scene, "-o", "results/s", "--word-bits", "20"}), "--word-bits");
 }

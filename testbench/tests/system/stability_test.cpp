@@ -1,4 +1,4 @@
-// The stability studies' program, and the bounds that must hold in what it measures.
+// The program of the stability studies, and bounds on what it measures.
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using Row = std::map<std::string, std::string>;
 
 double number(const Row& row, const std::string& column) { return std::stod(row.at(column)); }
 
-/// The program's standard output and error, and how it ended.
+/// The program's output, error output and exit code.
 struct StudyRun {
     int exit_code;
     std::string out;
@@ -64,7 +64,7 @@ class Stability : public ::testing::Test {
         return rows;
     }
 
-    /// Separated by commas; the studies quote what holds one.
+    /// The fields of a CSV line; those that contain a comma are quoted.
     static std::vector<std::string> fields(const std::string& line) {
         std::vector<std::string> all(1);
         bool quoted = false;
@@ -80,7 +80,7 @@ class Stability : public ::testing::Test {
         return all;
     }
 
-    /// Calls `check` for the rows with these values; there must be some.
+    /// Calls `check` for each row with these values; at least one must exist.
     static void for_rows(const std::vector<Row>& rows, const Row& where,
                          const std::function<void(const Row&)>& check) {
         int found = 0;

@@ -1,4 +1,4 @@
-// A run that is stopped in any cycle reports nothing later than its end, and says what waited for what.
+// A run stopped in any cycle reports nothing later than its end, and reports what waited for what.
 #include <sstream>
 
 #include "../property.hpp"
@@ -7,7 +7,7 @@
 namespace raycell::system_test {
 namespace {
 
-/// The numbers behind "since cycle " in a report's lines.
+/// The cycles after "since cycle " in a report's lines.
 std::vector<std::uint64_t> times_in(const Json& lines) {
     std::vector<std::uint64_t> times;
     for (const std::string line : lines) {
@@ -17,7 +17,7 @@ std::vector<std::uint64_t> times_in(const Json& lines) {
     return times;
 }
 
-/// A column of a table with a header, by name.
+/// A column of a table with a header, by its name.
 std::vector<std::uint64_t> column(const std::string& table, const std::string& name) {
     std::istringstream lines(table);
     std::string line;

@@ -1,10 +1,10 @@
-// What is foretold of a run before it starts: hops near those that it makes, and words where it will be long.
+// Estimates before a run starts: hops close to the real ones, and a message if the run will be long.
 #include "program.hpp"
 
 namespace raycell::system_test {
 namespace {
 
-/// Foretold and real hops of a run differ by a factor of `most` at most, in both directions.
+/// Expects estimated and real hops to differ by at most a factor of `most`.
 void expect_foretold(const Json& report, double most) {
     const Json& expected = report.at("model").at("expected");
     const Json& foretold = expected.at("hops");
@@ -80,7 +80,7 @@ TEST(Foretold, GrowsWithTheArrayAsTheHopsDo) {
             .at("trace")
             .get<double>();
     };
-    // Rays and the ways that they go: eight times for twice the side.
+    // Rays times path lengths: eight times as many for twice the side.
     EXPECT_NEAR(trace("128x128") / trace("64x64"), 8, 1);
 }
 
@@ -90,7 +90,7 @@ TEST(Foretold, OfTreesThatHardlyEndTakesNoTime) {
     const Finished finished = workshop.render(own_scene("still_life.nff"), words);
     EXPECT_LT(finished.seconds, sanitized ? 60 : 10) << "of processor time; measured: 0.5";
     const Json report = Json::parse(read_text(workshop.result("a.json")));
-    // A usual pixel of this scene takes 20 hops there.
+    // A usual pixel of this scene takes 20 hops.
     EXPECT_GT(report.at("model").at("expected").at("hops").at("trace"), 16 * 16 * 1000);
 }
 
@@ -103,7 +103,7 @@ TEST(Foretold, LoadsInNoTimeWhereAnotherRunHasLoaded) {
     EXPECT_EQ(report.at("model").at("expected").at("seconds").at("load"), 0);
 }
 
-// ---- words
+// ---- messages
 
 const Words long_run{"render",       own_scene("still_life.nff").string(),
                      "--cells",      "448x448",

@@ -1,4 +1,4 @@
-// Wrong words on the command line and in configuration files: exit code 1, one clear message, no file.
+// Errors on the command line and in configuration files: exit code 1, one clear message, no file.
 #include <algorithm>
 
 #include "program.hpp"
@@ -6,7 +6,7 @@
 namespace raycell::system_test {
 namespace {
 
-/// One message; the hint at --help may follow it.
+/// Expects one message; the hint at --help may follow it.
 void expect_refused(const Workshop& workshop, const Finished& finished, const std::string& part) {
     EXPECT_EQ(finished.exit_code, 1) << finished.err;
     EXPECT_EQ(finished.signal, 0);
@@ -164,7 +164,7 @@ TEST(Usage, OutputWhereNoneCanBeIsRefusedBeforeAnyWork) {
     for (const std::string prefix : {"missing/a", "results/", "", "stdout.txt/a"}) {
         SCOPED_TRACE("-o '" + prefix + "'");
         for (const std::string command : {"render", "truth"}) {
-            // A scene that is not there is not even looked for.
+            // The scene does not exist, but is not even looked for.
             expect_refused(workshop, workshop.run({command, "none.nff", "-o", prefix}), "--output " + prefix);
         }
     }
@@ -206,7 +206,7 @@ TEST(Configuration, UnknownKeysAreNamedWithTheirFile) {
 }
 
 TEST(Configuration, WrongValuesAreNamedWithTheirFile) {
-    // Otherwise a user looks for --depth on a command line where it isn't.
+    // Without the file's name, users would look for --depth on the command line.
     expect_configuration_refused("depth = 0\n", {"depth: ", "run.toml"});
     expect_configuration_refused("hit = \"foo\"\n", {"hit: ", "run.toml"});
     expect_configuration_refused("cells = \"8x\"\n", {"cells: ", "run.toml"});

@@ -1,4 +1,4 @@
-// Every run ends with a stated verdict, its exit code, and its files.
+// Every run ends with a stated verdict, its exit code and its files.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace raycell::system_test {
 namespace {
 
-/// Seconds of processor time in which a stuck machine must have been found out; measured: 3 at most.
+/// Seconds of processor time within which a stuck run must end; measured: 3 at most.
 constexpr double soon = 60;
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -54,8 +54,8 @@ TEST(Verdict, OneNetworkForAllDeadlocksOnMirrors) {
     const Json report =
         expect_verdict(workshop, "facing_mirrors.nff", {"--networks", "shared"}, "deadlock", 3);
     EXPECT_GE(report.at("deadlock").at("report").size(), 2u);
-    EXPECT_LT(report.at("cycles").at("trace").get<double>(), 1e7);  // to where it stopped, no farther
-    EXPECT_GT(report.at("ray_store").at("mean").get<double>(), 0);  // what is stuck counts
+    EXPECT_LT(report.at("cycles").at("trace").get<double>(), 1e7);  // counted up to where it stopped
+    EXPECT_GT(report.at("ray_store").at("mean").get<double>(), 0);  // stuck rays count
     EXPECT_LE(report.at("ray_store").at("mean").get<double>(),
               report.at("ray_store").at("peak").get<double>());
     for (const auto& line : report.at("deadlock").at("report")) {
@@ -83,7 +83,7 @@ TEST(Verdict, AStoreOfOneWithoutRecoveryDeadlocks) {
 }
 
 TEST(Verdict, MessagesThatCanNeverMoveAgainAreADeadlockWhileOthersArePostponed) {
-    // Some trees go on being postponed for ever; the ring of full buffers is a knot all the same.
+    // Some trees are postponed for ever, but the ring of full buffers is a knot all the same.
     const Workshop workshop;
     expect_verdict(workshop, "still_life.nff", {"--networks", "shared"}, "deadlock", 3);
 }
@@ -97,7 +97,7 @@ TEST(Verdict, AStoreOfOneIsALivelockWhereTreesComeBackToTheirCells) {
     }
 }
 
-/// What is said of a machine before it runs, and its bound in the JSON.
+/// The warning printed before a run, and the bound in its JSON.
 struct Told {
     std::string err;
     Json bound;
@@ -155,7 +155,7 @@ TEST(Verdict, AsManySlotsAsGenerationsAlwaysComeToAnEnd) {
         for (const int depth : {0, 1, 2, 4, 7}) {
             for (const std::string networks : {"half", "quadrant"}) {
                 SCOPED_TRACE(networks);
-                // One more than max_depth, since the last generation waits for its shadow rays.
+                // One slot more than max_depth, since the last generation waits for its shadow rays.
                 const Json report = workshop.report(
                     own_scene(scene), {"--cells", "24x24", "--max-depth", std::to_string(depth),
                                        "--ray-store", std::to_string(depth + 1), "--networks", networks});
@@ -180,7 +180,7 @@ TEST(Verdict, AnArrayOfOneRowOrColumnOrCellComesToAnEnd) {
     }
 }
 
-/// Cycles of cornell.nff, 32x32, with shadow bits cast before tracing.
+/// Cycles of each phase of a run.
 struct PhaseCycles {
     std::int64_t load, precast, trace, total;
 };

@@ -1,4 +1,4 @@
-// --watch-ray and --watch-pixel: the lives of rays as text.
+// --watch-ray and --watch-pixel: the life of rays as text.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -10,7 +10,7 @@
 namespace raycell::system_test {
 namespace {
 
-/// A line of the watch: an event.
+/// One line of the watch: an event.
 struct Event {
     std::int64_t cycle = 0;
     int x = 0;
@@ -81,7 +81,7 @@ void expect_in_order(const Lives& lives, int width) {
     }
 }
 
-/// Every ray that was launched ends with its answer at home, and nothing happens to it after that.
+/// Expects every launched ray to end with its answer at home and nothing after that.
 void expect_every_ray_to_end(const Lives& lives) {
     std::map<std::string, std::string> last;
     std::map<std::string, int> launches;

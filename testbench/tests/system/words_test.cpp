@@ -1,4 +1,5 @@
-// The machine in words: how near it comes to the truth, and that every option of its numbers does something.
+// The machine in fixed-point words: how near it comes to the truth, and the effect of every option of its
+// numbers.
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -56,9 +57,9 @@ const Words square = {"--cells", "32x32"};
 
 struct Effect {
     Words words;
-    Words instead_of;  ///< nothing: the defaults
-    bool picture;      ///< whether the picture must differ, or must be the same
-    bool cycles;       ///< the same of the cycles, where the pictures are the same
+    Words instead_of;  ///< if empty: the defaults
+    bool picture;      ///< whether the picture must differ; if not, it must be the same
+    bool cycles;       ///< whether the cycles must differ, where the pictures are the same
 };
 
 TEST(Options, OfNumbersEachDoWhatTheySay) {
@@ -86,16 +87,16 @@ TEST(Options, OfNumbersEachDoWhatTheySay) {
         {joined(by_table, {"--reciprocal-table", "16"}), by_table, true, false},
         {joined(by_table, {"--root-table", "16"}), by_table, true, false},
         {{"--power-table", "16"}, {}, true, false},
-        // Tables that are not looked up.
+        // The size of a table that is not used has no effect.
         {{"--reciprocal", "rounded", "--reciprocal-table", "4"}, {"--reciprocal", "rounded"}, false, false},
         {{"--root", "rounded", "--root-table", "4"}, {"--root", "rounded"}, false, false},
         {{"--power", "schlick", "--power-table", "4"}, {"--power", "schlick"}, false, false},
-        // Cycles of operators; only those of the method in use count.
+        // Cycles of operators: only the method in use counts.
         {{"--cost", "reciprocal_newton=9"}, {}, false, true},
         {{"--cost", "root_newton=9"}, {}, false, true},
         {{"--cost", "power_tables=9"}, {}, false, true},
         {{"--cost", "power_schlick=9", "--cost", "root_rounded=9"}, {}, false, false},
-        // 8 last bits of 2^-18.
+        // 8 last bits of 2^-18 each.
         {{"--normal-offset", "-1"}, {}, false, false},
         {{"--normal-offset", "-0.5"}, {}, false, false},
         {{"--normal-offset", "3.0517578125e-05"}, {}, false, false},
@@ -123,7 +124,7 @@ TEST(Options, FormatsAndBitsOfAReportFollowTheWord) {
         const Json report = workshop.report(own_scene("still_life.nff"),
                                             joined(square, {"--word-bits", std::to_string(word)}));
         EXPECT_EQ(report.at("formats").at("unit"), "Q2." + std::to_string(word - 2));
-        // A verdict has no word in it; an intensity has three.
+        // A verdict contains no word; an intensity contains three.
         const Json& bits = report.at("message_bits");
         EXPECT_EQ(bits.at("intensity").get<int>() - bits.at("verdict").get<int>(), 3 * word);
     }
@@ -131,7 +132,7 @@ TEST(Options, FormatsAndBitsOfAReportFollowTheWord) {
 
 // ---- warnings
 
-/// What standard error says of numbers that the cell's words can't hold.
+/// The warnings about numbers that the cell's words can't hold.
 std::string range_warnings(const std::string& light, const std::string& material, const Words& words) {
     const Workshop workshop;
     workshop.write("ball.nff",
@@ -157,7 +158,7 @@ TEST(RangeWarnings, NameWhatAWordCannotHoldAndWhatItIsHeldAs) {
     EXPECT_TRUE(contains(range_warnings("30 1 1", plain, {}), "a light of 30 is held as 7.99"));
     const std::string bends = range_warnings("1 1 1", "1 1 1 0.7 0.3 10 0.5 9", {"--word-bits", "16"});
     EXPECT_TRUE(contains(bends, "words of 16 bits: an index of refraction outside 0.125")) << bends;
-    // Nothing is bent where nothing is transmitted.
+    // The index of refraction does not matter where nothing is transmitted.
     EXPECT_EQ(range_warnings("1 1 1", "1 1 1 0.7 0.3 10 0 9", {}), "");
     EXPECT_EQ(range_warnings("30 1 1", "5 1 1 0.7 0.3 10 0.5 9", {"--arithmetic", "exact"}), "");
 }
