@@ -1,5 +1,5 @@
-// A scene in one plane that faces the viewer, or almost: it lies on no face of the cube and may not get lost
-// there.
+// A scene in one plane that faces the viewer, exactly or almost: it must not lie on a face of the cube and
+// get lost there.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace raycell::facing {
 
-/// A convex quad round the middle of the view, tilted by up to 1e-2, seen from a random place.
+/// A convex quad round the middle of the view, tilted by up to 1e-2, seen from a random viewpoint.
 struct Quad {
     Scene scene;
     std::vector<dvec3> corners;  ///< world
@@ -44,7 +44,7 @@ struct Quad {
     }
 };
 
-/// How far the pixel's ray passes inside the quad's outline, cells of the screen; negative: outside.
+/// Distance of the pixel's ray from the quad's outline, in cells on the screen; negative outside.
 inline double depth_inside(const Quad& quad, const Frame& frame, int x, int y) {
     const dvec2 pixel(x + 0.5, y + 0.5);
     double inside = 1e300;

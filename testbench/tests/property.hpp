@@ -1,4 +1,4 @@
-// Seeds of property tests: every random draw has one, and a failure tells how to draw the same again.
+// Seeds of property tests: every random draw has one, and a failure prints how to repeat it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace raycell::property {
 
-/// `count` seeds from `first` on, or only the one that RAYCELL_TEST_SEED names.
+/// `count` seeds from `first` on, or only the seed in RAYCELL_TEST_SEED, if set.
 inline std::vector<std::uint64_t> seeds(std::uint64_t first, int count) {
     if (const char* only = std::getenv("RAYCELL_TEST_SEED")) return {std::strtoull(only, nullptr, 10)};
     std::vector<std::uint64_t> all;
@@ -20,7 +20,7 @@ inline std::vector<std::uint64_t> seeds(std::uint64_t first, int count) {
     return all;
 }
 
-/// For SCOPED_TRACE: the seed and the command that draws it again.
+/// For SCOPED_TRACE: the seed and the command that repeats it.
 inline std::string rerun(std::uint64_t seed) {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     return "seed " + std::to_string(seed) + "; again with: RAYCELL_TEST_SEED=" + std::to_string(seed) + " " +

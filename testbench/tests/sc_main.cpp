@@ -1,5 +1,5 @@
-// Entry of tests that elaborate SystemC modules: libsystemc has the main(), and what SystemC reports fails
-// the test.
+// Entry of tests that elaborate SystemC modules. libsystemc has the main(); SystemC's error and warning
+// reports fail the test.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

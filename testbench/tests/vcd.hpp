@@ -1,4 +1,4 @@
-// Reads a value change dump back, independently of what wrote it.
+// Reads a value change dump (VCD), independently of the code that wrote it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace raycell::vcd {
 
 struct Change {
     std::uint64_t cycle;
-    std::string value;  ///< numbers in binary, words without their s
+    std::string value;  ///< numbers in binary, strings without their s
     bool operator==(const Change& other) const { return cycle == other.cycle && value == other.value; }
 };
 inline std::ostream& operator<<(std::ostream& out, const Change& change) {
@@ -33,7 +33,7 @@ struct Dump {
         EXPECT_NE(found, changes.end()) << "no signal " << path;
         return found == changes.end() ? none : found->second;
     }
-    /// The value at a cycle, empty before the first.
+    /// The value in a cycle; empty before the first change.
     std::string at(const std::string& path, std::uint64_t cycle) const {
         std::string value;
         for (const Change& change : of(path)) {
@@ -43,7 +43,7 @@ struct Dump {
     }
 };
 
-/// `period_ps`: of a cycle; times that are no whole cycles fail.
+/// Parses a dump. `period_ps` is the clock period in ps; a time that is not a whole cycle fails the test.
 inline Dump parse(const std::string& text, std::uint64_t period_ps) {
     Dump dump;
     std::istringstream in(text);

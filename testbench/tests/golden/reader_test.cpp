@@ -1,4 +1,4 @@
-// Golden vectors as text: nothing is lost on the way there and back, and what is wrong is named by its line.
+// Golden vectors as text: a round trip loses nothing, and errors name their line.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -68,14 +68,14 @@ LoadItem drawn_span(const Arithmetic& arithmetic, property::Random& random) {
     return item;
 }
 
-/// Exact arithmetic for one seed in four, words of any length for the others.
+/// Exact arithmetic for one draw in four, otherwise words of random length.
 Arithmetic drawn_arithmetic(property::Random& random) {
     if (random.chance(0.25)) return {};
     return {words_of(random.whole(8, 32)),
             {random.whole(1, 4096), random.whole(1, 4096), random.uniform(1, 900), 1}};
 }
 
-/// Text, and the text of what is read from it.
+/// Expects the text of a message to be the same after reading and writing it again.
 void expect_round_trip(const Words& words, const Message& message) {
     MessagePools pools;
     const std::string text = text_of(words, message);
@@ -214,14 +214,14 @@ TEST(GoldenReader, ReadsEveryKindOfLine) {
     EXPECT_EQ(setup.scene.frame.depth, 10);
     EXPECT_EQ(setup.scene.objects.at(0).colour, dvec3(1));
     EXPECT_EQ(setup.scene.sources.at(0).intensity, dvec3(1.0 / 65536));
-    // What is written of it is the same again.
+    // Writing what was read gives the same text again.
     const Context context(setup.scene, setup.picture);
     CellSetup again = setup_of_three();
     read_setup(read(setup_text(setup, context, "") + "40 end\n"), again);
     EXPECT_EQ(setup_text(again, Context(again.scene, again.picture), ""), setup_text(setup, context, ""));
 }
 
-/// `good` with one line (1 is the first) put in place of another; empty: left out.
+/// `good` with one line replaced (line 1 is the first), or left out if `line` is empty.
 std::string with_line(int number, const std::string& line) {
     std::istringstream in(good);
     std::string text;

@@ -1,4 +1,4 @@
-// One cell between two links, outside of any array: a ray comes in from the west and leaves to the east.
+// One cell between two links, outside any array: a ray comes in from the west and leaves to the east.
 #include <cells/hosts/cell_module.hpp>
 #include <iostream>
 

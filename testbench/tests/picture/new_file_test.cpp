@@ -1,4 +1,4 @@
-// Sets of files that are published together: all of them or none, and an earlier set whole until then.
+// Sets of files that are published together: all or none, and an earlier set stays whole until then.
 #include "testbench/common/new_file.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ class NewFiles : public ::testing::Test {
 
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
     void put(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
-    /// All that is there, by name; folders with the text "folder".
+    /// All files by name; a folder has the text "folder".
     std::map<std::string, std::string> all() const {
         std::map<std::string, std::string> files;
         for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -87,7 +87,7 @@ TEST_F(NewFiles, WhereverPublishingFailsTheEarlierSetIsWhole) {
         Files expected = earlier;
         expected[blocked] = "folder";
         Files there = all();
-        for (auto file = there.begin(); file != there.end();)  // they live as long as the set
+        for (auto file = there.begin(); file != there.end();)  // part files live as long as the set
             file = file->first.find(".part") != std::string::npos ? there.erase(file) : std::next(file);
         EXPECT_EQ(there, expected);
         fs::remove(path(blocked));

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for every test, gone afterwards.
+/// A fresh folder for every test, removed at the end.
 class PictureFile : public ::testing::Test {
   protected:
     PictureFile() {
@@ -61,7 +61,7 @@ Picture noise(int width, int height) {
     return picture;
 }
 
-/// What `work` throws must name the file.
+/// Runs `work` and returns the message that it throws, which must name the file.
 template <class Work>
 std::string message_naming(const std::string& file, Work work) {
     try {
@@ -202,7 +202,7 @@ TEST_F(PictureFile, AFileWithRandomDamageIsReadOrRefusedButNeverCrashes) {
         SCOPED_TRACE("seed " + std::to_string(seed) + ", file " + std::to_string(i));
         for (const bool is_exr : {true, false}) {
             std::string bytes = is_exr ? exr : png;
-            // Mostly in the header, where the sizes and names are.
+            // Mostly in the header, which holds sizes and names.
             const std::size_t reach = i % 3 ? 400 : bytes.size();
             for (int k = 0; k < 1 + i % 4; ++k)
                 bytes[random() % std::min(reach, bytes.size())] = char(random());

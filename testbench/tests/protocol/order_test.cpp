@@ -1,5 +1,5 @@
-// Which buffer waits for which: over rays that walk as the model walks them, in the classes that the model
-// gives them. Without a ring in this graph plain forwarding can't lock (cells/deadlock/deadlock.md, step 1).
+// The graph of which buffer waits for which, over rays that walk as in the model, in the model's buffer
+// classes. Without a ring in this graph, pure forwarding can't lock (cells/deadlock/deadlock.md, step 1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace raycell {
 namespace {
 
-/// A buffer: the cell that it stands in, the side that it is entered towards, its class.
+/// A buffer: x and y of its cell, the direction in which it is entered, and its class.
 using Buffer = std::tuple<int, int, Side, int>;
 using Waits = std::map<Buffer, std::set<Buffer>>;
 
@@ -22,7 +22,8 @@ constexpr int height = 3;
 
 bool inside(int x, int y) { return x >= 0 && x < width && y >= 0 && y < height; }
 
-/// A random ray from its first cell to the border; from a random hop on it may be outside the cube.
+/// Walks a random ray from its first cell to the border and adds its waits. From a random hop on, the ray may
+/// count as outside the cube.
 void walk(Waits& waits, const BufferClasses& classes, const Arithmetic& arithmetic,
           property::Random& random) {
     Ray ray;
@@ -50,13 +51,13 @@ void walk(Waits& waits, const BufferClasses& classes, const Arithmetic& arithmet
         cross(ray, crossing, arithmetic);
         x += step_x(crossing.side);
         y += step_y(crossing.side);
-        const Buffer next{x, y, crossing.side, index};  // over the border: the exterior's
+        const Buffer next{x, y, crossing.side, index};  // over the border: a buffer of the exterior
         if (stands) waits[*stands].insert(next);
         stands = next;
     }
 }
 
-/// Removes what waits for nothing until nothing is left, or only rings and what waits for them.
+/// Removes buffers that wait for nothing until none is left, or only rings and what waits for them.
 bool has_ring(Waits waits) {
     for (bool removed = true; removed;) {
         removed = false;
@@ -102,7 +103,7 @@ TEST(BufferOrder, OfForwardedRaysHasARingWhereTheyShareOneBuffer) {
 
 TEST(BufferOrder, OfAnswersThatGoAlongXAndThenAlongYHasNoRing) {
     Waits waits;
-    // From every cell, and over the border from outside, to every cell.
+    // From every cell, and from outside over the border, to every cell.
     for (int from_x = -1; from_x <= width; ++from_x) {
         for (int from_y = -1; from_y <= height; ++from_y) {
             const bool corner = (from_x < 0 || from_x == width) && (from_y < 0 || from_y == height);
@@ -119,8 +120,7 @@ TEST(BufferOrder, OfAnswersThatGoAlongXAndThenAlongYHasNoRing) {
                     x += step_x(side);
                     y += step_y(side);
                     const Buffer next{x, y, side, 0};
-                    // A border link's buffer of answers is another one than that of a link between cells, by
-                    // its cell and side.
+                    // Cell and side distinguish a border link's buffer from that of a link between cells.
                     if (stands) waits[*stands].insert(next);
                     stands = next;
                 }

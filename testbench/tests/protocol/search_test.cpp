@@ -1,5 +1,5 @@
-// Every interleaving of tiny arrays: what cells/deadlock/deadlock.md claims to end does, whatever comes
-// first; and for what it does not claim there is a shortest way to the deadlock or the livelock.
+// Every interleaving in tiny arrays: what cells/deadlock/deadlock.md claims to end does end in every order.
+// For what it does not claim, the search finds a shortest way to the deadlock or livelock.
 #include "testbench/protocol/search.hpp"
 
 #include <gtest/gtest.h>
@@ -38,8 +38,8 @@ Rules rules_for(const Script& script, int ray_store, Slots slots, Recovery recov
     return rules;
 }
 
-/// Two mirrors at the ends of a row, `trees` trees that start at each and go to and fro; the last generation
-/// waits for the verdict on a source in the middle.
+/// Two mirrors at the ends of a row. From each, `trees` trees start and go back and forth; the last
+/// generation waits for a verdict on a source in the middle.
 Script facing_mirrors(Networks networks, int width, int trees, int generations, int depth = 1) {
     Script script(width, 1, networks, depth);
     for (int tree = 0; tree < trees; ++tree) {
@@ -56,7 +56,7 @@ Script facing_mirrors(Networks networks, int width, int trees, int generations, 
     return script;
 }
 
-/// Four rays round a square, each over two links: what turns a corner waits for the next.
+/// Four rays round a square, each over two links: a ray that turns a corner waits for the next ray.
 Script round_a_square(Networks networks) {
     Script script(2, 2, networks);
     script.add("a", 0, 0, 1, 0.9, 2, End::answer);
@@ -172,7 +172,7 @@ TEST(EveryOrder, OfATreeThatComesBackToItsOnlySlotIsALivelock) {
 }
 
 TEST(EveryOrder, WithFreeSlotsIsALivelockWhereReservedOnesEnd) {
-    // As many trees at each mirror as it has slots: all wait for a slot of the other.
+    // Each mirror has as many trees as slots: all wait for a slot of the other mirror.
     const Script script = facing_mirrors(Networks::half, 2, 2, 2);
     const Rules rules = rules_for(script, 2, Slots::free, Recovery::postpone);
     const Result result = look("mirrors, four trees", script, rules, Networks::half);
@@ -180,7 +180,7 @@ TEST(EveryOrder, WithFreeSlotsIsALivelockWhereReservedOnesEnd) {
     EXPECT_GT(result.traps, 0u);
 }
 
-/// A ray that waits for a slot stands before the child (here a shadow ray) that would free it.
+/// A ray that waits for a slot stands in the buffer before the child (a shadow ray) that would free the slot.
 Script head_of_line(Networks networks) {
     Script script(2, 1, networks);
     for (const bool east : {true, false}) {
@@ -189,7 +189,7 @@ Script head_of_line(Networks networks) {
         const double way = east ? 1 : -1;
         const int here = script.add(name, x, 0, 0, 0, 0, End::hit);
         script.add_child(here, name + "/s", way, 0, 1, End::answer);
-        script.add(name + "2", x, 0, way, 0, 1, End::hit);  // an oblique primary ray: hits next door
+        script.add(name + "2", x, 0, way, 0, 1, End::hit);  // an oblique primary ray: hits in the next cell
     }
     return script;
 }
@@ -201,14 +201,14 @@ TEST(EveryOrder, WithoutRecoveryLocksAtTheHeadOfALineWherePostponingEnds) {
         EXPECT_GT(locked.deadlocks, 0u);
         EXPECT_TRUE(
             look("line", script, rules_for(script, 1, Slots::reserved, Recovery::postpone), n).always_ends());
-        // A slot for every ray that may ever wait there needs no recovery.
+        // With a slot for every ray that may ever wait there, no recovery is needed.
         EXPECT_TRUE(
             look("line", script, rules_for(script, 2, Slots::reserved, Recovery::none), n).always_ends());
     }
 }
 
 TEST(EveryOrder, OfVerdictsThatSeveralSlotsShareEnds) {
-    // Two hits of one voxel, of different generations; whichever comes first asks for both (memo).
+    // Two hits of one voxel by different generations; the first to come requests the verdict for both (memo).
     for (const Networks n : acyclic) {
         Script script(2, 1, n);
         const int root = script.add("a", 0, 0, 0, 0, 0, End::hit);
@@ -251,7 +251,7 @@ TEST(EveryOrder, OfPrecastRaysEndsWithoutAnySlot) {
     }
 }
 
-/// A few random trees in a tiny array; ways as long as they fit.
+/// A few random trees in a tiny array; a ray is drawn again when it would leave the array.
 Script random_script(property::Random& random, Networks networks) {
     const int width = random.whole(1, 3);
     const int height = width == 1 ? random.whole(2, 3) : random.whole(1, 2);
@@ -271,7 +271,7 @@ Script random_script(property::Random& random, Networks networks) {
             try {
                 return parent < 0 ? script.add(name, x, y, dx, dy, hops, end)
                                   : script.add_child(parent, name, dx, dy, hops, end);
-            } catch (const std::invalid_argument&) {  // left the array: another way
+            } catch (const std::invalid_argument&) {  // left the array: draw another way
             }
         }
     };

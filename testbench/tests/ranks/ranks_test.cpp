@@ -1,5 +1,4 @@
-// One machine simulated by several processes: the same run to the last bit, and an end that is the same for
-// all.
+// One machine simulated by several processes: the run is equal to the last bit, and all processes end alike.
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -21,8 +20,8 @@ constexpr const char* mpirun = "/usr/bin/mpirun";
     SKIP_WITHOUT_MPIRUN(); \
     if (!RAYCELL_HAS_MPI) GTEST_SKIP() << "the program is built without MPI"
 
-/// The words of mpirun for `ranks` processes of raycell; it refuses to be root's, and more ranks than cores,
-/// unless it is told.
+/// The arguments of mpirun for `ranks` processes of raycell. By default mpirun refuses to run as root and to
+/// start more ranks than cores; these options allow both.
 Words by_ranks(int ranks, const Words& words) {
     setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
     setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
@@ -33,7 +32,7 @@ Words render(const fs::path& scene, const std::string& name, const Words& more) 
     return joined({"render", scene.string(), "--quiet", "-o", "results/" + name}, more);
 }
 
-/// A report without what may differ: names, times, memory, and who did what.
+/// A report without the parts that may differ: names, times, memory, and which rank did what.
 Json comparable(const Workshop& workshop, const std::string& name) {
     Json json = Json::parse(read_text(workshop.result(name + ".json")));
     json.erase("model");
@@ -42,9 +41,8 @@ Json comparable(const Workshop& workshop, const std::string& name) {
     return json;
 }
 
-/// (Scenes with some thousand meetings: with more ranks than cores, beside other work, each can take a
-/// millisecond.)
-/// Runs a scene by one process and by these numbers of ranks, and expects the same of all, files included.
+/// Runs a scene in one process and with each number of ranks, and expects equal results, files included.
+/// Scenes should take only some thousand exchanges: with more ranks than cores, each can take a millisecond.
 void expect_same(const fs::path& scene, const Words& words, int exit_code = 0,
                  const std::vector<int>& counts = {2, 3}) {
     const Workshop workshop;
@@ -155,9 +153,9 @@ TEST(Ranks, StopAtTheSameLimit) {
     expect_same(own_scene("cornell.nff"), {"--cells", "16x16", "--max-cycles", "3000"}, 4);
 }
 
-// ---- how it ends otherwise
+// ---- abnormal ends
 
-/// The program's processes of this rank that were started from the workshop's folder.
+/// Id of the program's process of this rank that was started from the workshop's folder; 0 if there is none.
 pid_t process_of_rank(const Workshop& workshop, int rank) {
     const std::string wanted = "OMPI_COMM_WORLD_RANK=" + std::to_string(rank);
     for (const auto& entry : fs::directory_iterator("/proc")) {
@@ -171,14 +169,13 @@ pid_t process_of_rank(const Workshop& workshop, int rank) {
     return 0;
 }
 
-/// A run of minutes by two ranks. Their standard error is no terminal of mpirun's making, so it is given to
-/// them.
+/// A run of minutes with two ranks. mpirun gives them no terminal as standard error, so the test does.
 class RunByRanks : public Running {
   public:
     explicit RunByRanks(const Workshop& workshop)
         : Running(workshop, mpirun, words(), NamedTerminal()), workshop_(workshop) {}
 
-    /// Waits until both are at it, and sends one of them a signal.
+    /// Waits until the run is loading, and sends one rank a signal.
     void signal(int rank, int number) {
         ASSERT_TRUE(says("load: cycle")) << "it ended by itself";
         const pid_t process = process_of_rank(workshop_, rank);
@@ -234,7 +231,7 @@ TEST(Ranks, SayOnceThatResultsCannotBeWritten) {
     const Workshop workshop;
     RunByRanks run(workshop);
     ASSERT_TRUE(run.says("load: cycle"));
-    fs::create_directory(workshop.result("a.json"));  // after the program has looked
+    fs::create_directory(workshop.result("a.json"));  // after the program has checked the place
     run.signal(0, SIGTERM);
     const Finished finished = run.finish();
     EXPECT_EQ(finished.exit_code, 1);
@@ -245,7 +242,7 @@ TEST(Ranks, SayOnceThatResultsCannotBeWritten) {
     EXPECT_EQ(workshop.results(), std::vector<std::string>{"a.json"});
 }
 
-/// Expects a run by two ranks to say `message` once and to leave nothing.
+/// Expects a run with `ranks` ranks to print `message` once and to leave no results.
 void expect_refused(const Words& words, int exit_code, const std::string& message, int ranks = 2) {
     const Workshop workshop;
     workshop.write("bad.nff", "v\ngarbage\n");
@@ -270,8 +267,7 @@ TEST(Ranks, SayOnceWhatIsWrongWithTheOutput) {
     expect_refused({"render", scene, "-o", std::string(300, 'a')}, 1, "File name too long");
 }
 
-/// A process that takes itself for rank 0 of two or more: what is refused is so before it looks for the
-/// others.
+/// Runs a process that believes to be rank 0 of several. Expects a refusal before it contacts the others.
 void expect_refused_alone(const Words& words, const std::string& message, int ranks = 2) {
     SCOPED_TRACE(message);
     const Workshop workshop;

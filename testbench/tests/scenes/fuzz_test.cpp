@@ -1,5 +1,5 @@
-// Mutated scenes: a reader may refuse them, but only with an InputError, and what it accepts keeps every
-// promise.
+// Mutated scenes: a reader may refuse them, but only with an InputError; what it accepts keeps every promise
+// of a scene.
 #include <cstdlib>
 #include <random>
 
@@ -25,7 +25,7 @@ const std::string mtl =
     "a.png\n"
     "newmtl other\nKd 1 0 0\nillum 2\nKe 1 1 1\nKa 0 0 0\nbump b.png\nPm 1\nnonsense 3\n\x1a";
 
-/// Pieces that are likely to matter somewhere.
+/// Words that are likely to matter somewhere in a scene.
 const std::string pieces[] = {"nan",
                               "inf",
                               "-1",
@@ -95,7 +95,7 @@ std::string mutate(std::string text, std::mt19937_64& random) {
             case 4:
                 text.insert(at, pieces[below(std::size(pieces))]);
                 break;
-            default: {  // a word for another one
+            default: {  // replaces a word
                 const std::size_t from = std::min(text.find_last_of(" \n", at) + 1, text.size());
                 const std::size_t to = std::min(text.find_first_of(" \n", from), text.size());
                 text.replace(from, to - from, pieces[below(std::size(pieces))]);
@@ -105,7 +105,7 @@ std::string mutate(std::string text, std::mt19937_64& random) {
     return text;
 }
 
-/// Another seed: RAYCELL_FUZZ_SEED=N scenes_tests --gtest_filter='Fuzz*'
+/// The seed. To set another: RAYCELL_FUZZ_SEED=N scenes_tests --gtest_filter='Fuzz*'
 std::uint64_t seed() {
     const char* given = std::getenv("RAYCELL_FUZZ_SEED");
     return given ? std::strtoull(given, nullptr, 10) : 1990;

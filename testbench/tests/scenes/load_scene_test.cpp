@@ -49,7 +49,7 @@ TEST(LoadScene, RejectsWhatIsNoReadableFile) {
     EXPECT_NE(error_of(""), "");
 }
 
-/// Root reads every file: while one of these lives, root is nobody.
+/// Root may read every file, so while one of these lives, root acts as the user nobody.
 class NotRoot {
   public:
     NotRoot() {

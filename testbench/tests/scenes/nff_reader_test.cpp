@@ -24,7 +24,7 @@ Read read(const std::string& text) {
     return out;
 }
 
-/// The error that the text must end in; empty (and a failed test) if it is read.
+/// The error that reading the text must end in. Empty, with a failed test, if the text is accepted.
 std::string error_of(const std::string& text) {
     Diagnostics diagnostics;
     try {
@@ -196,7 +196,7 @@ TEST(NffReader, ReadsEveryWayToWriteANumber) {
                         "s 0 0 0 0.000000000000000000000000000000001e33\ns 1e30 0 0 1e29\n");
     const auto sphere = [&](int i) { return std::get<SpherePrimitive>(r.scene.primitives.at(i).shape); };
     EXPECT_EQ(sphere(0).centre, dvec3(1, -0.5, 2));
-    EXPECT_EQ(sphere(1).radius, 12.5);  // the one before has a radius of nothing and is dropped
+    EXPECT_EQ(sphere(1).radius, 12.5);  // the one before has radius 0 and is dropped
     EXPECT_EQ(sphere(2).radius, 1);
     EXPECT_EQ(sphere(3).centre.x, 1e30);
     EXPECT_EQ(r.diagnostics.count_of("sphere without extent"), 1u);

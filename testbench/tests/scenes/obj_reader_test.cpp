@@ -33,7 +33,7 @@ void expect_error(const std::string& text, std::size_t line, const std::string& 
     }
 }
 
-/// Reads a square with material `m` of the given library text.
+/// Reads a square with material `m` from a library with this text.
 Read with_library(const std::string& library) {
     const Folder folder;
     folder.write("m.mtl", library);
@@ -245,7 +245,7 @@ TEST(ObjReader, NeverOpensALibraryOutsideTheScenesFolder) {
         EXPECT_EQ(r.messages().find("0.123"), std::string::npos);
         EXPECT_EQ(r.messages().find("root:"), std::string::npos);
     }
-    // A way out and back in is harmless.
+    // A path that leaves the folder and comes back is harmless.
     EXPECT_EQ(read("mtllib ../" + folder.path().filename().string() + "/secret.mtl\n" + square, folder.path())
                   .messages(),
               "");

@@ -1,5 +1,5 @@
-// OBJ and MTL statements that are odd, left out or wrong, and the treatment of each: what leaves the geometry
-// whole is a warning, what does not is an error.
+// Odd, ignored or wrong statements of OBJ and MTL, and their treatment: a warning if the geometry stays
+// whole, otherwise an error.
 #include "scene_checks.hpp"
 
 namespace raycell {
@@ -12,7 +12,7 @@ struct Statement {
     const char* text;
     Treatment treatment;
     const char* part;       ///< of the message
-    std::size_t faces = 1;  ///< that are drawn, beside the one that the test adds
+    std::size_t faces = 1;  ///< number drawn, without the one that the test adds
 };
 constexpr Treatment silent = Treatment::silent;
 constexpr Treatment warning = Treatment::warning;
@@ -80,7 +80,7 @@ const Statement statements[] = {
     {"vn 0 0 nan\nf 1//2 2//2 3//2", warning, "a vertex normal has no length"},
     {"vt", silent, "", 0},
     {"vt x y z", silent, "", 0},
-    // Statements that are left out.
+    // Statements that are ignored.
     {"g a b c", silent, "", 0},
     {"o name", silent, "", 0},
     {"s 1", silent, "", 0},
@@ -120,7 +120,7 @@ TEST_P(ObjStatement, GetsItsTreatment) {
     const Statement& s = GetParam();
     Diagnostics diagnostics;
     const std::string text = vertices + s.text + "\nf -4 -3 -2 -1\n";
-    // A vertex of the statement moves relative indices: four before it are enough.
+    // A vertex in the statement shifts relative indices; four vertices before it are enough.
     Scene scene;
     std::string message;
     try {
@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(All, ObjStatement, ::testing::ValuesIn(statements));
 
 struct MaterialLine {
     const char* text;
-    const char* part;  ///< of the warning; empty: nothing to say
+    const char* part;  ///< of the warning; empty: no warning
 };
 
 const MaterialLine material_lines[] = {

@@ -87,7 +87,7 @@ TEST(Outline, CutsANonPlanarPolygonIntoTrianglesWithoutCracks) {
     const Added a = add(outline);
     EXPECT_EQ(a.diagnostics.count_of("non-planar polygon"), 1u);
     ASSERT_EQ(a.scene.primitives.size(), 2u);
-    // Edges of the outline appear once, in its direction; all others twice, once each way.
+    // Edges of the outline appear once, in its direction; all other edges twice, once in each direction.
     std::map<std::pair<std::size_t, std::size_t>, int> edges;
     const auto index = [&](const dvec3& v) {
         return static_cast<std::size_t>(std::find(outline.begin(), outline.end(), v) - outline.begin());

@@ -1,4 +1,4 @@
-// What the tests of the readers share.
+// Shared by the tests of the readers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ inline void expect_sound(const ConePrimitive& cone) {
     ASSERT_GT(cone.base_radius + cone.apex_radius, 0);
 }
 
-/// Every promise of model/geometry/scene.hpp.
+/// Expects every promise of model/geometry/scene.hpp.
 inline void expect_sound(const Scene& scene) {
     ASSERT_TRUE(finite(scene.background));
     ASSERT_LE(scene.sources.size(), max_sources);
@@ -83,7 +83,7 @@ inline std::string all_messages(const Diagnostics& diagnostics) {
     return out;
 }
 
-/// A folder of its own for a test's files, removed at its end.
+/// A fresh folder for a test's files, removed at the end.
 class Folder {
   public:
     Folder() {
@@ -108,7 +108,7 @@ class Folder {
     std::filesystem::path path_;
 };
 
-/// Scene data that lies beside the project, where it does.
+/// Folder of the scene data beside the project; it may be missing.
 inline std::filesystem::path shared_scenes() {
     return std::filesystem::path(RAYCELL_SOURCE_DIR) / ".." / "shared" / "scenes";
 }

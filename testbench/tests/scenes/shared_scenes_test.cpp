@@ -1,5 +1,4 @@
-// The data that lies beside the project: the Standard Procedural Databases, OBJ scenes and the malformed
-// inputs.
+// The scene data beside the project: the Standard Procedural Databases, OBJ scenes and malformed inputs.
 #include <ctime>
 
 #include "scene_checks.hpp"

@@ -8,7 +8,7 @@ import sys
 
 from expectation import expect
 
-# In place of the program: notes each run; from run LIMIT on it fails.
+# A stand-in for the program: records each run, and fails after LIMIT runs.
 PROGRAM = """#!/bin/bash
 echo "$*" >> '{folder}/calls'
 if [ $(wc -l < '{folder}/calls') -gt {limit} ]; then
@@ -19,7 +19,7 @@ exec '{program}' "$@"
 """
 QUICK = ["--only", "growth", "--growth-side", "8", "--depths", "16,1024", "--max-depths", "0,4", "--precast-side", "8"]
 SIDES = [8, 64, 80]
-RUNS = 4 + 2 + 2  # arrays, the smallest with precast, too; then depth and max-depth, with precast
+RUNS = 4 + 2 + 2  # arrays, the smallest also with precast; then depth and max-depth, each also with precast
 
 
 class Test:
@@ -30,7 +30,7 @@ class Test:
         for path in (self.scenes, self.programs):
             path.mkdir(parents=True)
         own = pathlib.Path(script).resolve().parents[1] / "scenes" / "cornell.nff"
-        shutil.copy(own, self.scenes / "teapot-s4.nff")  # a scene of that name is what it looks for
+        shutil.copy(own, self.scenes / "teapot-s4.nff")  # the bench looks for a scene of this name
         self.out = self.folder / "out"
         self.stand_in(10 ** 6)
 
@@ -47,7 +47,7 @@ class Test:
                               check=False)
 
     def calls(self):
-        """So many runs since the last call."""
+        """Number of runs since the last call."""
         path = self.folder / "calls"
         number = len(path.read_text().splitlines()) if path.exists() else 0
         path.unlink(missing_ok=True)
@@ -94,7 +94,7 @@ class Test:
         kept = self.rows("bench_growth.csv.part")
         expect(len(kept) == 3, "three rows are kept")
         self.calls()
-        # The program is the same in all that counts here.
+        # Makes the kept rows look as if made by the full program, which differs in nothing that counts here.
         for row in kept:
             row["made_by"] = self.made_by(10 ** 6)
         self.rewrite("bench_growth.csv.part", kept)
@@ -115,7 +115,7 @@ class Test:
             writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
-            file.write("teapot-s4,8,10")  # a line that was cut off
+            file.write("teapot-s4,8,10")  # an incomplete line
 
     def others(self):
         expect(self.bench().returncode == 0 and self.calls() == RUNS, "a first bench")

@@ -1,4 +1,4 @@
-"""What the tests of scripts say when something is not as it should be."""
+"""The failure message that all tests of scripts use."""
 import sys
 
 

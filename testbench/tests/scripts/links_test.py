@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every link of the documents leads to a file that is there: links_test.py PROJECT_FOLDER."""
+"""Tests that every link in the documents leads to an existing file: links_test.py PROJECT_FOLDER."""
 import pathlib
 import re
 import sys

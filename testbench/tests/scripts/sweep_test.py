@@ -12,8 +12,8 @@ import time
 
 from expectation import expect
 
-# In place of the program: notes each run; while FOLDER/broken is there, those it names fail; while FOLDER/held is, all
-# after the fourth wait.
+# A stand-in for the program: records each run. While FOLDER/broken exists, the runs that it names fail. While
+# FOLDER/held exists, all runs after the fourth wait.
 PROGRAM = """#!/bin/bash
 echo "$*" >> '{folder}/calls'
 if [ -e '{folder}/broken' ] && [[ " $* " == *"$(cat '{folder}/broken')"* ]]; then
@@ -23,7 +23,7 @@ fi
 while [ -e '{folder}/held' ] && [ $(wc -l < '{folder}/calls') -gt 4 ]; do sleep 0.1; done
 exec '{program}' "$@"
 """
-# In place of Slurm's commands: jobs are processes; their state is a file.
+# Stand-ins for Slurm's commands: jobs are processes, and each job's state is a file.
 SBATCH = """#!/bin/bash
 script=${!#}
 number=$(($(cat '{folder}/jobs' 2>/dev/null || echo 0) + 1))
@@ -60,7 +60,7 @@ class Test:
                 *options]
 
     def sweep(self, sweep, program, code, *options):
-        """What it says."""
+        """Runs a sweep, expects this exit code and returns the output."""
         result = subprocess.run(self.words(sweep, program, options), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                 text=True, env=self.environment)
         print(result.stdout)
@@ -72,7 +72,7 @@ class Test:
         return path.read_text().splitlines() if path.exists() else []
 
     def records(self):
-        """{file: when it was written} of the runs that are in the cache with a result."""
+        """The cached runs that have a result: {file: time of its last change, in ns}."""
         return {path: path.stat().st_mtime_ns for path in self.out.glob("cache/*/*.json")
                 if '"report"' in path.read_text()}
 
@@ -86,7 +86,7 @@ class Test:
                                             "--seed 2 ")
 
     def same(self, other):
-        """All of a sweep whose runs share pictures, and its CSV is that of its own script in OTHER_FOLDER."""
+        """A whole sweep whose runs share pictures: its CSV equals the one that its own script wrote to OTHER_FOLDER."""
         self.sweep("accuracy", self.program, 0)
         mine, its = ((folder / "accuracy.csv").read_text() for folder in (self.out, pathlib.Path(other)))
         expect(mine == its, "the same CSV as without Snakemake")
@@ -96,7 +96,7 @@ class Test:
         expect("26 distinct runs, 8 timed, 26 finished" in listed, "without Snakemake the runs count as finished")
 
     def expect_code_of_tables(self):
-        """Tables are made again when anything changes that makes them: all that their modules import of ours."""
+        """Tables depend on all code that makes them: every module of the project that their modules import."""
         plan, = self.out.glob("**/plan.json")
         code = {pathlib.Path(path) for path in json.loads(plan.read_text())["code"]}
         makers = [path for path in code if path.stem in ("tables", "pictures", "rows")]
@@ -108,7 +108,7 @@ class Test:
                 expect(module in code, f"{module}, which {path} imports, among what makes the tables")
 
     def failure(self):
-        """A run that fails is named, ends no other, and alone is made again; until then there are no tables."""
+        """A failed run is named, stops no other run and is the only one made again; until then there are no tables."""
         program = self.stand_in("program", PROGRAM)
         self.break_shared()
         said = self.sweep("time_outs", program, 1)
@@ -125,7 +125,7 @@ class Test:
         self.expect_tables(True)
 
     def stop(self, number):
-        """Stopped half way by a signal, and begun again."""
+        """A sweep is stopped half way by a signal, and started again."""
         program = self.stand_in("program", PROGRAM)
         held = self.folder / "held"
         held.touch()
@@ -146,12 +146,12 @@ class Test:
         self.expect_tables(True)
 
     def slurm(self):
-        """The profile for Slurm, with processes as its jobs: groups of runs, and one that fails in a group."""
+        """The profile for Slurm with processes as jobs: groups of runs, of which some fail."""
         program = self.stand_in("program", PROGRAM)
         self.break_shared()
         for name, text in {"sbatch": SBATCH, "sacct": SACCT}.items():
             self.stand_in(name, text)
-        # Snakemake asks for the state of jobs every ten seconds, but with this.
+        # Snakemake asks for the state of jobs every ten seconds unless CI is set.
         self.environment.update(PATH=f"{self.folder}:{os.environ['PATH']}", CI="true")
         profile = pathlib.Path(self.script).parent / "studies" / "sweeps" / "slurm"
         options = ["--", "--profile", str(profile), "--cores", "2", "--latency-wait", "5", "--group-components", "runs=4"]

@@ -1,5 +1,5 @@
-// The machine against the truth, on whole scenes: exact arithmetic chooses the truth's surfaces, ties
-// included, and longer words come nearer to it.
+// The machine against the truth, on whole scenes: exact arithmetic hits the same surfaces, ties included, and
+// longer words come nearer to the truth.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct SceneCase {
     std::string folder;
     std::string name;
     bool edges_on_pixels =
-        false;  ///< edges run through pixel centres: words choose by a direction's last bit
+        false;  ///< edges run through pixel centres, so the last bit of a direction decides between surfaces
 };
 void PrintTo(const SceneCase& scene, std::ostream* out) { *out << scene.name; }
 
@@ -76,7 +76,7 @@ TEST_P(WholeScenes, HaveNoOtherFirstHitThanTheTruthInExactArithmetic) {
     }
 }
 
-/// Those without edges through pixel centres, which no word length settles.
+/// Scenes without edges through pixel centres, which no word length can settle.
 class WholeScenesInWords : public WholeScenes {};
 
 TEST_P(WholeScenesInWords, GainWithEveryFourBitsAndComeWithinReachOfTheTruth) {

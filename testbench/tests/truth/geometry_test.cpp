@@ -1,4 +1,4 @@
-// Which polygon a ray meets: concave outlines, no cracks, Embree against trying all.
+// Which polygon a ray hits: concave outlines, no cracks, Embree against a search through all polygons.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using namespace hand_made;
 
 constexpr std::uint64_t seed = 20240607;
 
-/// Winding number by the angles that the edges subtend: shares nothing with the renderer's crossing number.
+/// Winding number from the angles that the edges subtend: independent of the renderer's crossing number.
 bool winds_round(const std::vector<dvec2>& outline, const dvec2& p) {
     double turn = 0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -26,7 +26,7 @@ bool winds_round(const std::vector<dvec2>& outline, const dvec2& p) {
     return std::abs(turn) > pi;
 }
 
-/// A gear or star with `teeth` teeth, four vertices each, rather irregular but never crossing itself.
+/// A gear or star with `teeth` teeth of four vertices each, irregular but never crossing itself.
 std::vector<dvec2> gear(int teeth, std::mt19937_64& random) {
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     std::vector<dvec2> outline;
@@ -68,7 +68,7 @@ TEST(TruthGeometry, AConcavePolygonIsHitExactlyWhereItsOutlineWindsRoundThePoint
     }
 }
 
-/// Closed but dented, far from the origin, where single precision is coarse.
+/// A closed, dented ball far from the origin, where single precision is coarse.
 CellScene dented_ball(const dvec3& centre, int slices) {
     CellScene scene = cube(1, 1, 1);
     add_ball(scene, add_object(scene, matt(1)), centre, slices, slices / 2, [](const dvec3& way) {
@@ -106,7 +106,7 @@ TEST(TruthGeometry, NoRayFromFarOutsideEntersAClosedSurfaceUnseen) {
     for (int i = 0; i < 60000; ++i) {
         const Polygon& polygon = scene.polygons[random() % scene.polygons.size()];
         const dvec3& vertex = polygon.vertices[random() % 3];
-        const dvec3 way = glm::normalize(centre - vertex);  // on through the middle
+        const dvec3 way = glm::normalize(centre - vertex);  // through the vertex towards the centre
         const double distance = std::pow(10.0, double(i % 7));
         const auto hit = truth.intersect(vertex - distance * way, way, no_polygon);
         ASSERT_TRUE(hit) << "seed " << seed << ", ray " << i;
@@ -114,7 +114,7 @@ TEST(TruthGeometry, NoRayFromFarOutsideEntersAClosedSurfaceUnseen) {
     }
 }
 
-/// Polygons of all sizes, some concave, some exactly equal but for the id, and two floors to the horizon.
+/// Polygons of all sizes, some concave, some equal except for the id, and two floors that reach the horizon.
 CellScene litter(std::mt19937_64& random) {
     CellScene scene = cube(1, 1, 1);
     const std::uint32_t object = add_object(scene, matt(1));
@@ -123,7 +123,7 @@ CellScene litter(std::mt19937_64& random) {
         const dvec3 centre = random_point(random, -2000, 2000) * (i % 2 ? 1.0 : 0.02);
         const dvec3 u = size * random_direction(random);
         const dvec3 v = size * random_direction(random);
-        const double dent = i % 3 == 0 ? -0.3 : 1;  // three of four corners, the last pushed in
+        const double dent = i % 3 == 0 ? -0.3 : 1;  // the last of four corners is pushed in
         add_polygon(scene, object, {centre, centre + u, centre + dent * (u + v), centre + v});
         if (i % 5 == 0) add_polygon(scene, object, scene.polygons.back().vertices);
     }
@@ -155,7 +155,7 @@ TEST(TruthGeometry, EmbreeFindsTheHitThatTryingEveryPolygonFinds) {
         dvec3 from = random_point(random, -3000, 3000);
         std::uint32_t exclude = no_polygon;
         if (i % 3 == 1) from *= 1e4;
-        if (i % 3 == 2) {  // as secondary rays do: from a polygon that they can't hit again
+        if (i % 3 == 2) {  // like a secondary ray, which can't hit the polygon that it leaves
             from = 0.5 * (start.vertices[0] + start.vertices[1]);
             exclude = start.id;
         }
@@ -182,7 +182,7 @@ TEST(TruthGeometry, AFloorToTheHorizonLeavesThePrecisionOfTheOthersAlone) {
     const dvec3 low{-1e12, 40, -1e12};
     add_rectangle(scene, 0, low, {2e12, 0, 0}, {0, 0, 2e12});
     const TruthRenderer truth(scene);
-    // Trying 160,000 polygons for each ray, as a useless tree would, takes minutes.
+    // Testing all 160,000 polygons for each ray, as a poor tree would, takes minutes.
     for (int i = 0; i < 100000; ++i) {
         const dvec3 floor(1e6 * random_direction(random).x, 40, 1e6 * random_direction(random).z);
         const dvec3 way = glm::normalize(random_point(random, -5, 5) - floor);

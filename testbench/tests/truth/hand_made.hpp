@@ -1,4 +1,4 @@
-// Scenes made by hand, in cell coordinates, for the truth's tests.
+// Hand-made scenes in cell coordinates, for tests.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace raycell::hand_made {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// An empty cube with the viewer at infinity: the ray through (x, y) starts there and goes straight down z.
+/// An empty cube with the viewer at infinity: the ray of pixel (x, y) starts at the screen and goes along z.
 inline CellScene cube(int width, int height, double depth) {
     CellScene scene;
     scene.frame.width = width;
@@ -22,7 +22,7 @@ inline CellScene cube(int width, int height, double depth) {
     return scene;
 }
 
-/// Seen as `colour` from everywhere where there are no sources (the ambient term is 0.1·Kd·C).
+/// A material seen as `colour` from everywhere if there are no sources (the ambient term is 0.1·Kd·C).
 inline Material glowing(const dvec3& colour) {
     Material material;
     material.colour = 10.0 * colour;
@@ -35,7 +35,7 @@ inline Material matt(double diffuse) {
     material.diffuse = diffuse;
     return material;
 }
-/// Nothing but a mirror; its highlight is too narrow to be seen.
+/// A pure mirror; its highlight is too narrow to be seen.
 inline Material mirror(double share) {
     Material material;
     material.diffuse = 0;
@@ -60,13 +60,13 @@ inline void add_polygon(CellScene& scene, std::uint32_t object, std::vector<dvec
     scene.polygons.push_back(make_polygon(std::uint32_t(scene.polygons.size()), object, std::move(vertices)));
 }
 
-/// A rectangle corner + a·u + b·v; its front is on the side of u × v.
+/// Adds a rectangle corner + a·u + b·v; its front is on the side of u × v.
 inline void add_rectangle(CellScene& scene, std::uint32_t object, const dvec3& corner, const dvec3& u,
                           const dvec3& v) {
     add_polygon(scene, object, {corner, corner + u, corner + u + v, corner + v});
 }
 
-/// A closed surface round `centre`: radius(direction) cells away from it, on a grid of slices by stacks.
+/// Adds a closed surface round `centre`, radius(direction) cells away, on a grid of slices and stacks.
 /// Neighbouring triangles share their vertices bit for bit; vertex normals point away from the centre.
 inline void add_ball(CellScene& scene, std::uint32_t object, const dvec3& centre, int slices, int stacks,
                      const std::function<double(const dvec3&)>& radius) {
@@ -112,7 +112,7 @@ inline dvec3 random_point(std::mt19937_64& random, double low, double high) {
     return {x, y, z};
 }
 
-/// Where along [low, high] a yes/no answer changes, by bisection; the ends must answer differently.
+/// Where on [low, high] a yes/no answer changes, by bisection. The answers at the two ends must differ.
 inline double edge_between(double low, double high, const std::function<bool(double)>& answer) {
     const bool at_low = answer(low);
     for (int i = 0; i < 60; ++i) {

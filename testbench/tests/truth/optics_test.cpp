@@ -1,4 +1,4 @@
-// What a ray brings back, against formulas: silhouettes, mirrors, glass, shadows, the limits of a tree.
+// Radiance of a ray, against formulas: silhouettes, mirrors, glass, shadows, limits of a tree.
 #include <gtest/gtest.h>
 
 #include "model/truth/truth.hpp"
@@ -19,14 +19,14 @@ TEST(TruthOptics, ASphereCoversAsManyPixelsAsItsSilhouetteHasArea) {
     const Picture picture = TruthRenderer(scene).render();
     double covered = 0;
     for (const Pixel& pixel : picture.pixels) covered += pixel.polygon != no_polygon;
-    // 0.1 %: the 256-gon's area is 0.01 % short, and a circle of this size holds its area in pixel centres
-    // to within a few tens of 20,106.
+    // Within 0.1 %: the area of the 256-gon is 0.01 % short, and the pixel centres in a circle of this size
+    // count its area to within a few tens of 20,106.
     EXPECT_NEAR(covered / (pi * radius * radius), 1, 1e-3);
     EXPECT_NEAR(picture.at(100, 100).depth, 20, 0.02);
     EXPECT_LT(picture.at(100, 100).normal.z, -0.999);
 }
 
-/// Triangles of many colours, glowing, between x = -120 and x = -20: left of what the viewer sees directly.
+/// Glowing triangles of many colours between x = -120 and x = -20, left of what the viewer sees directly.
 CellScene confetti(int count) {
     std::mt19937_64 random(seed);
     CellScene scene = cube(60, 60, 60);
@@ -43,7 +43,7 @@ CellScene confetti(int count) {
 
 TEST(TruthOptics, AMirrorShowsWhatTheMirroredObjectsWouldShow) {
     CellScene mirrored = confetti(60);
-    // The plane x + z = 60: (x, y, z) is mirrored to (60 - z, y, 60 - x).
+    // The mirror is the plane x + z = 60: it maps (x, y, z) to (60 - z, y, 60 - x).
     for (Polygon& polygon : mirrored.polygons) {
         std::vector<dvec3> vertices;
         for (const dvec3& p : polygon.vertices) vertices.push_back({60 - p.z, p.y, 60 - p.x});
@@ -64,8 +64,8 @@ TEST(TruthOptics, AMirrorShowsWhatTheMirroredObjectsWouldShow) {
     EXPECT_LT(objects, 3600);
 }
 
-/// A slab of glass between z = 10 and z = 22, and behind it a wall at z = 30: black left of x = 0, white
-/// right.
+/// A slab of glass between z = 10 and z = 22, and a wall behind it at z = 30, black for x < 0 and white for x
+/// > 0.
 CellScene slab(double ior) {
     CellScene scene = cube(1, 1, 40);
     const std::uint32_t pane = add_object(scene, glass(1, ior));
@@ -79,7 +79,7 @@ CellScene slab(double ior) {
 TEST(TruthOptics, ASlabOfGlassShiftsARayAsSnellsLawSays) {
     for (const double ior : {1.1, 1.5, 2.4}) {
         const CellScene scene = slab(ior);
-        ASSERT_LT(scene.polygons[0].plane.n.z, 0);  // both faces look outwards
+        ASSERT_LT(scene.polygons[0].plane.n.z, 0);  // both faces point outwards
         const TruthRenderer truth(scene);
         for (const double degrees : {0.0, 10.0, 30.0, 60.0, 80.0}) {
             const double outside = degrees * pi / 180;
@@ -112,7 +112,7 @@ TEST(TruthOptics, BeyondTheCriticalAngleTheShareTGoesOnAsAReflection) {
     }
 }
 
-/// A source at (0, 0, 0), a screen at z = 100, and a plate at z = 40 that reaches from x = 5 to the right.
+/// A source at (0, 0, 0), a screen at z = 100, and a plate at z = 40 that covers x > 5.
 CellScene plate(const Material& material) {
     CellScene scene = cube(1, 1, 100);
     add_rectangle(scene, add_object(scene, matt(1)), {-500, -500, 100}, {0, 1000, 0}, {1000, 0, 0});
@@ -188,7 +188,7 @@ TEST(TruthOptics, ATreeEndsAtTheLimitOfItsDepth) {
 
 TEST(TruthOptics, ATreeEndsWhereARayWouldWeighLessThanTheThreshold) {
     const CellScene scene = hall(0.5);
-    EXPECT_EQ(reflections(scene, {62, 1.0 / 256}, 0, 1), 8u);  // 0.5^8 weighs just enough
+    EXPECT_EQ(reflections(scene, {62, 1.0 / 256}, 0, 1), 8u);  // 0.5^8 is just enough
     EXPECT_EQ(reflections(scene, {62, 1.0 / 255}, 0, 1), 7u);
     EXPECT_EQ(reflections(scene, {62, 1.0 / 256}, 0, 0.25), 6u);
 }
@@ -225,7 +225,7 @@ TEST(TruthOptics, ProgressCountsEveryRowOnceAndItsExceptionStopsTheWork) {
 
 TEST(TruthOptics, CountingSpansTheFieldOfViewFromTheFirstToTheLastPixelCentre) {
     CellScene scene = cube(16, 16, 10);
-    // Covers the left half of the field of view, [0.5, 15.5], up to 8.0 exactly.
+    // Covers the left half of the field of view, which is [0.5, 15.5], up to exactly 8.0.
     add_rectangle(scene, add_object(scene, mirror(0.5)), {0.5 - 1e-6, 0, 5}, {7.5, 0, 0}, {0, 16, 0});
     scene.sources.push_back({{8, 8, -50}, dvec3(1)});
     scene.sources.push_back({{8, 8, 50}, dvec3(1)});
@@ -233,7 +233,7 @@ TEST(TruthOptics, CountingSpansTheFieldOfViewFromTheFirstToTheLastPixelCentre) {
     EXPECT_EQ(counts.eye, 101u * 101u);
     EXPECT_EQ(counts.eye_hits, 101u * 50u);
     EXPECT_EQ(counts.reflected, 101u * 50u);
-    EXPECT_EQ(counts.shadow, 101u * 50u);  // to the source in front, not to the one behind
+    EXPECT_EQ(counts.shadow, 101u * 50u);  // to the source in front; the one behind casts none
     EXPECT_EQ(counts.refracted, 0u);
 }
 

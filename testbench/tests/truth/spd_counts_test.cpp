@@ -31,14 +31,15 @@ TEST_P(SpdCounts, TheTruthSendsAsManyRaysAsPublishedWithinTwoPercent) {
     PictureSettings settings;
     settings.width = settings.height = 512;
     settings.chord_error =
-        0.5;  // half a pixel: the counts at 0.1 differ by 0.3 %, the memory by a factor of 5
+        0.5;  // half a pixel: at 0.1 the counts differ by 0.3 % and the memory by a factor of 5
     const CellScene placed = place_scene(scene, place_frame(scene, settings), settings);
     const TruthCounts counts = TruthRenderer(placed).count(513);
     EXPECT_EQ(counts.eye, 513u * 513u);
     EXPECT_NEAR(double(counts.eye_hits), published.eye_hits, 0.02 * published.eye_hits);
     EXPECT_NEAR(double(counts.reflected), published.reflected, 0.02 * published.reflected);
     EXPECT_NEAR(double(counts.shadow), published.shadow, 0.02 * published.shadow);
-    // Whether a ray just leaves or is totally reflected hangs on the last bits of gears' many equal angles.
+    // Whether a ray is transmitted or totally reflected depends on the last bits of the many equal angles of
+    // gears.
     EXPECT_NEAR(double(counts.refracted), published.refracted, 0.04 * published.refracted);
 }
 

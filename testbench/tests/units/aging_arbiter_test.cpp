@@ -1,4 +1,4 @@
-// Who has waited for too long, without a cell.
+// The aging arbiter without a cell: which messages are overdue.
 #include "cells/units/aging_arbiter.hpp"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(AgingArbiter, LooksAgainWhenTheOldestCanBeOverdue) {
     look.add(3 * epoch + 5, Kind::ray, 0);
     look.add(4 * epoch, Kind::answer, 0);
     EXPECT_TRUE(look.finish().empty());
-    const Cycle next = patience + 4 * epoch;  // the epoch that begins after 3 epochs, 5 and its patience
+    const Cycle next = patience + 4 * epoch;  // the first epoch after 3 epochs, 5 cycles and the patience
     EXPECT_FALSE(arbiter.due(next - 1));
     EXPECT_TRUE(arbiter.due(next));
 }

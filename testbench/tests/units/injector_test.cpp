@@ -1,4 +1,4 @@
-// The cell's own rays, without a cell.
+// The injector of the cell's own rays, without a cell.
 #include "cells/units/injector.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The input ports, without a cell: links in, whose cycles are told by hand.
+// The input ports without a cell: links in, with cycles set by hand.
 #include "cells/units/input_ports.hpp"
 
 #include "units.hpp"
@@ -29,7 +29,7 @@ struct Ports {
 };
 
 TEST(InputPorts, HaveABufferOfRaysPerSideAndDirectionInHalves) {
-    // A horizontal link carries rays one way only, a vertical one both.
+    // A horizontal link carries rays of one class, a vertical link of both.
     EXPECT_EQ(Ports(Networks::half).ports.ray_inputs(), 6u);
 }
 

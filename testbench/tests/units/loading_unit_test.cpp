@@ -1,4 +1,4 @@
-// One load message's stay in a cell, without a cell.
+// A load message in the loading unit, without a cell.
 #include "cells/units/loading_unit.hpp"
 
 #include "units.hpp"
@@ -6,7 +6,7 @@
 namespace raycell {
 namespace {
 
-/// A link that holds one message; its cycles are told by hand.
+/// A link that holds one message, with cycles set by hand.
 struct Loads {
     Scheduler scheduler{"scheduler", sc_core::sc_time(50, sc_core::SC_NS)};
     Link link{scheduler, 1, 1};
@@ -19,7 +19,7 @@ struct Loads {
     }
 };
 
-/// A span that has come to column 4, in the cell of column x.
+/// Expects the cycles that a span at column 4 takes in a cell of column x.
 void expect_work(int x, std::uint32_t CostTable::*cycles) {
     Loads loads;
     loads.item.kind = LoadItem::Kind::span;

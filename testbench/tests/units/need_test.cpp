@@ -1,4 +1,4 @@
-// What a tested ray needs next: every case once.
+// What a tested ray needs next: each case once.
 #include "units.hpp"
 
 namespace raycell {

@@ -1,4 +1,4 @@
-// The ray store's slots: which generation finds one, and what a slot that is given back lets in.
+// The slots of the ray store: which generations get one, and whose release lets another ray in.
 #include "cells/units/ray_store.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace raycell {
 namespace {
 
-/// How many of a generation find a slot one after the other.
+/// Number of rays of a generation that get a slot, one after the other.
 int takes(RayStore& store, int generation) {
     int count = 0;
     while (store.allocate(generation)) ++count;
@@ -14,7 +14,7 @@ int takes(RayStore& store, int generation) {
 }
 
 TEST(RayStore, KeepsWithReservedOneSlotForEachGenerationAndSharesTheRest) {
-    RayStore store(6, 4, Slots::reserved);  // two are free for all
+    RayStore store(6, 4, Slots::reserved);  // two slots are free for all
     EXPECT_EQ(takes(store, 0), 3);
     for (const int generation : {1, 2, 3}) {
         EXPECT_TRUE(store.has_room(generation));
@@ -49,7 +49,7 @@ TEST(RayStore, GivesWithFreeToWhoeverComes) {
 }
 
 TEST(RayStore, KnowsWhoseSlotWouldLetAnotherIn) {
-    RayStore store(5, 4, Slots::reserved);  // one is free for all
+    RayStore store(5, 4, Slots::reserved);  // one slot is free for all
     ASSERT_EQ(takes(store, 0), 2);
     ASSERT_EQ(takes(store, 1), 1);
     EXPECT_TRUE(store.would_help(0, 1)) << "a borrowed one";

@@ -1,4 +1,4 @@
-// The router, without a cell: two links out, whose cycles are told by hand.
+// The router without a cell: two links out, with cycles set by hand.
 #include "cells/units/router.hpp"
 
 #include "units.hpp"

@@ -1,4 +1,4 @@
-// The shading unit's order of work, and what a slot lacks, without a cell.
+// The shading unit without a cell: the order of its work, and what a slot still lacks.
 #include "cells/units/shading_unit.hpp"
 
 #include "units.hpp"

@@ -1,4 +1,4 @@
-// The time-out: how long nothing moves while something wants to.
+// The time-out: for how long nothing has moved while something wants to.
 #include "cells/units/time_out.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// One ray's test, without a cell.
+// The test of one ray in the traversal unit, without a cell.
 #include "cells/units/traversal_unit.hpp"
 
 #include "units.hpp"

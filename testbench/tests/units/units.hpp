@@ -1,4 +1,4 @@
-// What tests of units share: a context without an array.
+// Shared by tests of units: a context without an array.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace raycell {
 
-/// Cells of 3x3, a cube 10 deep, exact arithmetic; object 0 is matt, 1 a mirror.
+/// A 3x3 array, a cube 10 cells deep, exact arithmetic. Object 0 is matt, object 1 a mirror.
 struct UnitContext {
     explicit UnitContext(int sources = 0, Shadows shadows = Shadows::per_hit)
         : scene(hand_made::cube(3, 3, 10)) {
