@@ -124,7 +124,7 @@ TEST_P(TimedPicture, EqualsTheUntimedOneBitForBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seed, TimedPicture, ::testing::Range<std::uint64_t>(1, 61));
-// Here other rays for the same output went before the ray at the head of a buffer for ever.
+// Regression: other rays for the same output went before the ray at the head of a buffer for ever.
 INSTANTIATE_TEST_SUITE_P(Starvation, TimedPicture, ::testing::Values<std::uint64_t>(1130));
 
 TEST(TimedSchedule, IsTheSameOnEveryRun) {

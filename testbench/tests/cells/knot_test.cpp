@@ -113,8 +113,7 @@ TEST(Knot, IsNotSeenInCongestionThatTheCycleLimitCut) {
 }
 
 TEST(Knot, ThatHasFormedIsSeenThoughTheCycleLimitCameFirst) {
-    // The run of OfSharedBuffersIsARingOfBuffersAlone has its knot by then, but other parts move until cycle
-    // 76469.
+    // In the run of OfSharedBuffersIsARingOfBuffersAlone, other messages move until cycle 76469.
     Stuck stuck("facing_mirrors", [](PictureSettings&, MachineSettings& m) {
         m.networks = Networks::shared;
         m.max_cycles = 75500;

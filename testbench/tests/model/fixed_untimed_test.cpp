@@ -83,7 +83,7 @@ TEST(FixedPictures, SurviveScenesThatNoWordCanHold) {
 }
 
 /// The scene with features that 8-bit words represent exactly, so that only the arithmetic differs. (Features
-/// have 12 bits, whatever the word length.)
+/// have 12 bits, and fewer only in shorter words.)
 CellScene with_features_of_words(CellScene scene) {
     const Arithmetic least({Numbers::fixed, 8, Rounding::nearest, {}}, extent_of(scene.frame));
     for (Material& material : scene.objects) material = hold(material, least);

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of scripts/study bench's growing jobs: bench_test.py CASE STUDY_SCRIPT PROGRAM FOLDER. FOLDER is emptied first."""
+"""Tests of scripts/study bench's growing jobs: bench_test.py CASE STUDY_SCRIPT PROGRAM FOLDER. Empties FOLDER first."""
 import csv
 import pathlib
 import shutil

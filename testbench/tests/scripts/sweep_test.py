@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of scripts/study sweep: sweep_test.py CASE STUDY_SCRIPT PROGRAM FOLDER [OTHER_FOLDER]. FOLDER is emptied first."""
+"""Tests of scripts/study sweep: sweep_test.py CASE STUDY_SCRIPT PROGRAM FOLDER [OTHER_FOLDER]. Empties FOLDER first."""
 import json
 import os
 import pathlib
