@@ -45,7 +45,7 @@ class CellCheck {
     void number(const char* what, double value) const {
         if (!std::isfinite(value)) fail(std::string(what) + " is not finite", "a number");
         if (picture_.numbers.arithmetic == Numbers::exact) return;
-        // What every word is, whatever its format: no more than 48 bits, of which 40 at most are a fraction.
+        // A word of any format has at most 48 bits, and at most 40 of them are fraction bits.
         const double units = value * 0x1p40;
         if (std::abs(value) > 0x1p48 || units != std::floor(units))
             fail(std::string(what) + " is no word", "fixed-point words");
@@ -94,7 +94,7 @@ class CellCheck {
     const CellStore& cell_;
     const CellScene& scene_;
     const PictureSettings& picture_;
-    std::optional<std::size_t> voxel_;  ///< the one at hand
+    std::optional<std::size_t> voxel_;  ///< the one being checked
 };
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::uint64_t magic = 0x326c6c6563796172ULL;  // "raycell" and a version
 
-/// Every number is visited as 64 bits, so that writing, reading and hashing go over one list of fields.
+/// Hashes a sequence of numbers. Every number counts as 64 bits, so that writing, reading and hashing share
+/// one list of fields.
 class Hasher {
   public:
     void number(std::uint64_t value) {
@@ -52,7 +53,7 @@ class Reader {
         hasher_.number(value);
         return value;
     }
-    /// A number of things that take `bytes` each in the file: no more than there can be.
+    /// Reads a count; fails if it is larger than `most`.
     std::size_t count(std::uint64_t most) {
         const std::uint64_t value = next();
         if (value > most) fail("is damaged; expected a loaded array");
@@ -68,7 +69,7 @@ class Reader {
     std::FILE* file_;
     const std::string& name_;
     Hasher hasher_;
-    std::uint64_t last_ = 0;  ///< hash of all before the last number
+    std::uint64_t last_ = 0;  ///< hash of everything before the last number
 };
 
 std::uint64_t bits_of(double value) {
@@ -77,7 +78,7 @@ std::uint64_t bits_of(double value) {
     return bits;
 }
 
-/// Puts numbers out.
+/// Writes fields to a Writer or a Hasher.
 template <typename Out>
 class Put {
   public:
@@ -93,7 +94,7 @@ class Put {
     Out& out_;
 };
 
-/// Takes them in again.
+/// Reads the same fields from a Reader.
 class Get {
   public:
     explicit Get(Reader& in) : in_(in) {}
@@ -147,7 +148,7 @@ CellStore get_cell(Reader& reader) {
     const std::size_t voxels = reader.count(most_things);
     const std::size_t edges = reader.count(most_things);
     const std::size_t intensities = reader.count(most_things);
-    // Grown one by one: a damaged count must not ask for memory that the file can't fill.
+    // Grows one element at a time: a damaged count must not ask for memory that the file can't fill.
     for (std::size_t i = 0; i < voxels; ++i) fields_of_voxel(get, cell.voxels.emplace_back());
     for (std::size_t i = 0; i < edges; ++i) fields_of_edge(get, cell.edges.emplace_back());
     for (std::size_t i = 0; i < intensities; ++i) get.vector(cell.intensities.emplace_back());

@@ -1,4 +1,4 @@
-// What a program may open to read.
+// Checks an input path before it is opened.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +6,9 @@
 
 namespace raycell {
 
-/// What stands against reading this path as a file ("no such file", "is a directory", "is a device, pipe or
-/// socket", or what the system says); empty if nothing does. Nothing is opened: to open a pipe would wait for
-/// its writer, and to read a device might never end.
+/// Why this path can't be read as a file ("no such file", "is a directory", "is a device, pipe or socket", or
+/// the system's message); empty if it can. Opens nothing: opening a pipe would wait for its writer, and
+/// reading a device might never end.
 std::string input_fault(const std::filesystem::path& path);
 
 }  // namespace raycell

@@ -23,12 +23,13 @@ Frame::PrimaryRay Frame::primary_ray(double x, double y) const {
 
 namespace {
 
-/// Room between the visible scene and the cube's front and back, cells: what faces the viewer must not lie on
-/// a face, where words can't tell inside from outside. It also covers what facets lie inside of a curved
-/// surface.
+/// Margin between the visible scene and the cube's front and back, in cells. A surface that faces the viewer
+/// must not lie on a face of the cube, where words can't tell inside from outside. The margin also covers the
+/// distance by which facets lie inside a curved surface.
 double margin_of(const PictureSettings& settings) { return std::max(0.5, 2 * settings.chord_error); }
 
-/// What the array takes in, in the viewer's coordinates: `tan_x`, `tan_y` are its half sides at distance 1.
+/// The array's field of view, in the viewer's coordinates. `tan_x` and `tan_y` are half of its sides at
+/// distance 1.
 std::vector<HalfSpace> field_of_view(ViewerMode viewer, double tan_x, double tan_y, double hither,
                                      double to_target) {
     if (viewer == ViewerMode::infinity) {
@@ -73,8 +74,8 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
 
     const double margin = margin_of(settings);
     double near = extent.near - margin * tan_cell * to_target;
-    // The nearer the screen, the smaller its cells. Nothing before `hither` is to be seen: a scene that is
-    // cut off there passes through the screen.
+    // A nearer screen has smaller cells, so the margin shrinks with the distance. Nothing nearer than
+    // `hither` is seen: a scene that is cut off there passes through the screen.
     if (!frame.viewer_at_infinity) near = std::max(extent.near / (1 + margin * tan_cell), 0.999 * hither);
     const double distance = frame.viewer_at_infinity ? to_target : near;
     frame.cell_width = tan_cell * distance;
@@ -107,7 +108,7 @@ CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSetti
         std::move(polygons.begin(), polygons.end(), std::back_inserter(placed.polygons));
     }
     const Box cube = frame.cube();
-    constexpr double hair = 1e-6;  // cells: what touches a face does not lie beyond it
+    constexpr double hair = 1e-6;  // cells; a polygon that only touches a face does not lie beyond it
     bool any_inside = false;
     for (const Polygon& polygon : placed.polygons) {
         any_inside = any_inside || !clip_to_box(polygon.vertices, cube).empty();

@@ -40,7 +40,7 @@ struct Frame {
     PrimaryRay primary_ray(double x, double y) const;
 };
 
-/// How far numbers reach in the frame's array.
+/// The dimensions that number formats depend on, for the frame's array.
 inline ArrayExtent extent_of(const Frame& frame) {
     return {frame.width, frame.height, frame.depth, frame.level()};
 }
@@ -61,12 +61,12 @@ struct CellScene {
     std::vector<Material> objects;
     std::vector<Source> sources;
     std::vector<Polygon> polygons;
-    std::vector<std::string> warnings;  ///< what was treated otherwise than written, for standard error
+    std::vector<std::string> warnings;  ///< what is not treated as written, for standard error
     std::array<bool, 6> beyond{};       ///< per Face: whether any polygon reaches beyond its plane
 };
 
-/// Sets up the frame for a scene: the screen where the visible scene begins, the back where it ends.
-/// Throws std::invalid_argument if the scene has no view.
+/// Sets up the frame for a scene: the screen stands where the visible scene begins, the back of the cube
+/// where it ends. Throws std::invalid_argument if the scene has no view.
 Frame place_frame(const Scene& scene, const PictureSettings& settings);
 
 /// Tessellates the whole scene into a frame. Throws std::invalid_argument for more than max_sources sources.

@@ -8,7 +8,7 @@ namespace raycell {
 
 int dominant_axis(const dvec3& n) {
     const dvec3 a = glm::abs(n);
-    // The screen's own axis wins ties, so that a 45 degree plane is stored as the cells see it.
+    // Axis z wins ties, so that a 45 degree plane is stored as the cells see it.
     if (a.z >= a.x && a.z >= a.y) return 2;
     return a.x >= a.y ? 0 : 1;
 }
@@ -25,7 +25,7 @@ Plane hold_plane(const Plane& plane, int drop, const dvec3& anchor, const Format
     Plane held;
     held.n = hold_each(slope, plane.n * scale);
     held.n[drop] = plane.n[drop] < 0 ? -1 : 1;
-    // The anchor may lie a little off the plane: only its other two coordinates are taken.
+    // The anchor may lie slightly off the plane, so only its two kept coordinates are used.
     const Projection axes = projection(drop);
     dvec3 on_plane = anchor;
     on_plane[drop] =
@@ -125,7 +125,8 @@ std::vector<dvec3> clip_where(const std::vector<dvec3>& outline, Distance distan
         const double db = distance(b);
         if (da >= 0) kept.push_back(a);
         if ((da >= 0) != (db >= 0)) {
-            // Always from the inner to the outer end: neighbours that share the edge get the same point.
+            // Always cut from the inner to the outer end, so that neighbours that share the edge get the same
+            // point.
             const dvec3& in = da >= 0 ? a : b;
             const dvec3& out = da >= 0 ? b : a;
             const double d_in = da >= 0 ? da : db;
@@ -172,7 +173,7 @@ std::vector<std::array<std::size_t, 3>> triangulate(const std::vector<dvec3>& ou
     const int drop = dominant_axis(normal);
     std::vector<dvec2> flat;
     for (const dvec3& p : outline) flat.push_back(project(p, drop));
-    // Seen from the side where the outline runs counter-clockwise in (u, v).
+    // Sign of areas: positive where the outline turns counter-clockwise, seen from the normal's side.
     const double turn = (drop == 1 ? -normal[drop] : normal[drop]) > 0 ? 1 : -1;
     const auto area = [&](std::size_t a, std::size_t b, std::size_t c) {
         const dvec2 q = flat[b] - flat[a];
@@ -182,8 +183,8 @@ std::vector<std::array<std::size_t, 3>> triangulate(const std::vector<dvec3>& ou
     std::vector<std::size_t> rest(n);
     for (std::size_t i = 0; i < n; ++i) rest[i] = i;
     std::vector<bool> cut(n, false);
-    // Of each corner's triangle: all vertices before this one are known to lie outside of it. They only get
-    // fewer, so that a search goes on where the one before ended.
+    // Per corner: all vertices before this one are known to lie outside the corner's triangle. Vertices only
+    // disappear, so a search continues where the previous one stopped.
     std::vector<std::size_t> outside_before(n, 0);
     std::vector<std::array<std::size_t, 3>> triangles;
     const auto corner = [&](std::size_t k) {
@@ -204,7 +205,7 @@ std::vector<std::array<std::size_t, 3>> triangulate(const std::vector<dvec3>& ou
     while (rest.size() > 3) {
         std::size_t ear = 0;
         while (ear < rest.size() && !is_ear(ear)) ++ear;
-        if (ear == rest.size()) ear = 0;  // an outline that crosses itself: any corner, so that it ends
+        if (ear == rest.size()) ear = 0;  // the outline crosses itself: cut any corner, so that the loop ends
         triangles.push_back(corner(ear));
         const auto [a, b, c] = triangles.back();
         cut[b] = true;

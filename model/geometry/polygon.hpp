@@ -13,7 +13,7 @@ namespace raycell {
 
 constexpr std::uint32_t no_polygon = std::numeric_limits<std::uint32_t>::max();
 
-/// The plane n·p = c; n is unit.
+/// The plane n·p = c; n is unit, or scaled by hold_plane().
 struct Plane {
     dvec3 n{0, 0, 1};
     double c = 0;
@@ -49,34 +49,34 @@ struct Polygon {
     std::uint32_t object = 0;  ///< index of its features (Material)
     Plane plane;
     int drop = 2;  ///< dominant axis of plane.n
-    /// Farthest that a vertex lies off the plane, along the dropped axis, cells: files round their
-    /// coordinates. Cells are touched, and edges drawn, with this much room, so that a plane and its outline
+    /// Largest distance of a vertex from the plane along the dropped axis, in cells; files round their
+    /// coordinates. Touched cells and edges are computed with this tolerance, so that a plane and its outline
     /// can't disagree.
     double slack = 0;
     NormalField normal;
     std::vector<dvec3> vertices;  ///< cell coordinates, in order round the polygon, possibly concave
 };
 
-/// A plane in words: scaled so that n[drop] is 1 or -1, the other two slopes rounded to `slope`, then the
-/// offset taken from these rounded slopes at `anchor`, a point of the plane, and rounded to `offset`. Slopes
-/// and offset rounded apart would be two roundings of one plane: the tilt's error, times the way from the
-/// origin, would shift it.
+/// Rounds a plane to words. It is scaled so that n[drop] is 1 or -1, and the other two slopes are rounded to
+/// `slope`. The offset is computed from the rounded slopes at `anchor`, a point of the plane, and rounded to
+/// `offset`. If slopes and offset were rounded independently, the plane would shift by the tilt's error times
+/// the distance from the origin.
 Plane hold_plane(const Plane& plane, int drop, const dvec3& anchor, const Format& slope,
                  const Format& offset);
 
-/// A field of normals in words, in the same manner: right at `anchor` whatever the gradients lose.
+/// Rounds a field of normals to words in the same way: it is right at `anchor`, whatever the gradients lose.
 NormalField hold_field(const NormalField& field, const dvec2& anchor, const Format& gradient,
                        const Format& base);
 
-/// A field for words that hold less than `most`, a power of two. Only its direction counts, so it is scaled
-/// by a power of two until its largest component lies in [most / 2, most). A field that turns so fast that
-/// less than `least` of it would be left at `anchor` belongs to a polygon that words can't tell from a point:
-/// its value there is kept, without gradients, and `single` is set.
+/// Scales a field for words that hold less than `most`, a power of two. Only the field's direction counts, so
+/// it is scaled by a power of two until its largest component lies in [most / 2, most). If the field turns so
+/// fast that less than `least` of it would be left at `anchor`, words can't tell its polygon from a point:
+/// the result is the value at `anchor` without gradients, and `single` is set.
 NormalField fill_words(const NormalField& field, const dvec2& anchor, double most, double least,
                        bool* single = nullptr);
 
-/// Least part of a field that words of this format must be left with: below it, a direction is off by over
-/// 1/64.
+/// Smallest length of a normal in words of this format: a shorter normal has a direction that is off by more
+/// than 1/64.
 inline double least_normal(const Format& format) { return 64 * format.step(); }
 
 /// Sum of the edges' cross products (Newell): twice the area, along the normal; sound for concave outlines.
@@ -86,7 +86,7 @@ dvec3 newell(const std::vector<dvec3>& vertices);
 /// Throws std::invalid_argument if the outline has no area.
 Polygon make_polygon(std::uint32_t id, std::uint32_t object, std::vector<dvec3> vertices);
 
-/// Makes a triangle whose normals run linearly between those of its vertices.
+/// Makes a triangle whose normals are interpolated linearly between those of its vertices.
 Polygon make_triangle(std::uint32_t id, std::uint32_t object, const std::array<dvec3, 3>& vertices,
                       const std::array<dvec3, 3>& normals);
 
@@ -97,7 +97,7 @@ struct Box {
 };
 
 /// The part of an outline on the side sign·(p[axis] − at) ≥ 0 (Sutherland & Hodgman 1974). Cut points lie
-/// on the plane exactly, and are the same whichever way round the outline runs.
+/// exactly on the plane and do not depend on the direction of the outline.
 std::vector<dvec3> clip_half_space(const std::vector<dvec3>& outline, int axis, double at, double sign);
 
 /// The part of an outline where n·p ≥ c.

@@ -36,7 +36,7 @@ class Builder {
             polygons.push_back(make_polygon(next_id_++, object_, std::move(outline)));
             return;
         }
-        // Only over a triangle is "linear between the vertices" one function.
+        // Only over a triangle is linear interpolation between the vertices a single function.
         for (const auto& t : triangulate(outline, newell(outline))) {
             triangle({outline[t[0]], outline[t[1]], outline[t[2]]},
                      {to_frame(shape.normals[t[0]]), to_frame(shape.normals[t[1]]),
@@ -55,7 +55,7 @@ class Builder {
         for (int octant = 0; octant < 8; ++octant) {
             const dvec3 sign{octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1};
             const bool mirrored = sign.x * sign.y * sign.z < 0;
-            // A vertex is a function of three whole numbers alone, so octants share theirs bit for bit.
+            // A vertex depends on three whole numbers alone, so octants share their vertices bit for bit.
             const auto normal = [&](int i, int j) { return glm::normalize(dvec3(i, j, n - i - j)) * sign; };
             const auto facet = [&](dvec3 a, dvec3 b, dvec3 c) {
                 if (mirrored != shape.inward) std::swap(b, c);
@@ -126,7 +126,7 @@ class Builder {
     }
 
     void triangle(const std::array<dvec3, 3>& corners, const std::array<dvec3, 3>& normals) {
-        if (!has_area({corners.begin(), corners.end()})) return;  // smaller than a double can see
+        if (!has_area({corners.begin(), corners.end()})) return;  // no area in double precision
         polygons.push_back(make_triangle(next_id_++, object_, corners, normals));
     }
 

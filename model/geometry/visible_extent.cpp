@@ -25,12 +25,12 @@ namespace {
 
 const dvec3 depth_axis{0, 0, 1};
 
-/// Points among which the nearest and the farthest of a surface are found, if they lie in the field. z is
-/// extreme where the surface alone holds it, where it does with one side of the field (a curve's nearest and
-/// farthest points), or with two (a line through the surface): each is a closed form.
+/// Collects points among which the nearest and the farthest of a surface are found, if they lie in the field.
+/// z is extreme on the surface itself, on a curve where one side of the field cuts it, or on a line where two
+/// sides meet; each case has a closed form.
 class Candidates {
   public:
-    /// `room`: what a point on a side may be off by, world units.
+    /// `room`: tolerance for points on a side, in world units.
     Candidates(const std::vector<HalfSpace>& field, double room) : room_(room) {
         for (const HalfSpace& side : field) {
             const double length = glm::length(side.n);
@@ -48,7 +48,7 @@ class Candidates {
         extent_.add(p.z);
     }
 
-    /// A circle round `axis` (unit): its own extremes and where the sides cut it.
+    /// Adds a circle round `axis` (unit): its own extremes, and the points where the sides cut it.
     void add_circle(const dvec3& centre, const dvec3& axis, double radius) {
         const dvec3 along = depth_axis - axis.z * axis;
         const dvec3 helper = std::abs(axis.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
@@ -75,7 +75,7 @@ class Candidates {
     Extent extent_;
 };
 
-/// Real solutions of a·x² + b·x + c = 0; none if all x are.
+/// Real solutions of a·x² + b·x + c = 0; none if every x is a solution.
 std::vector<double> roots(double a, double b, double c) {
     if (a == 0) return b == 0 ? std::vector<double>() : std::vector<double>{-c / b};
     const double squared = b * b - 4 * a * c;
@@ -109,14 +109,14 @@ Extent of_sphere(const SpherePrimitive& shape, const ViewAxes& axes, const std::
                               std::sqrt(radius * radius - distance * distance));
     }
     Extent extent = candidates.extent();
-    // Facets lie inside the sphere, at most this far where their number is limited; a whole sphere holds
-    // them.
+    // Facets lie inside the sphere, by at most this much where their number is limited. Only a cut sphere
+    // needs the margin: a whole sphere encloses its facets.
     if (cut && extent.near <= extent.far) extent = {extent.near - 1e-4 * radius, extent.far + 1e-4 * radius};
     return extent;
 }
 
-/// A cone's lateral surface: all p of |q|² − h² = (r + k·h)² with q = p − base, h = q·axis from 0 to the
-/// height.
+/// A cone's lateral surface: all p with |q|² − h² = (r + k·h)², where q = p − base and h = q·axis, for h from
+/// 0 to the height.
 class ConeExtent {
   public:
     ConeExtent(const ConePrimitive& shape, const ViewAxes& axes, const std::vector<HalfSpace>& field)
@@ -153,15 +153,15 @@ class ConeExtent {
         if (h >= 0 && h <= height_ && radius_ + slope_ * h >= 0) candidates_.add(base_ + q);
     }
 
-    /// Nearest and farthest point of the curve in which a side cuts the surface.
+    /// Adds the nearest and the farthest point of the curve in which a side cuts the surface.
     void add_section(const HalfSpace& side) {
         const dvec3 origin = side.n * (side.c - glm::dot(side.n, base_));
         const dvec3 along = depth_axis - side.n.z * side.n;
-        if (glm::length(along) < 1e-9) return;  // it faces the viewer: one depth, and lines find it
+        if (glm::length(along) < 1e-9) return;  // one depth, which add_line() finds
         const dvec3 e1 = glm::normalize(along);
-        const dvec3 e2 = glm::cross(side.n, e1);  // depth is the same along it
-        // c·b² + 2(m·a + e)·b + (A·a² + 2D·a + F) = 0 in q = origin + a·e1 + b·e2: extreme in a where b is
-        // double.
+        const dvec3 e2 = glm::cross(side.n, e1);  // depth is constant along it
+        // c·b² + 2(m·a + e)·b + (A·a² + 2D·a + F) = 0 with q = origin + a·e1 + b·e2. a is extreme where b is
+        // a double root.
         const double c = form(e2, e2);
         if (c == 0) return;
         const double m = form(e1, e2);

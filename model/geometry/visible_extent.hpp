@@ -1,4 +1,4 @@
-// How far the visible part of a scene reaches in depth: where the cube begins and ends (design, section 3).
+// Depth range of the visible part of a scene: it decides where the cube begins and ends (design, section 3).
 #pragma once
 
 #include <limits>
@@ -22,7 +22,7 @@ struct Extent {
     void add(const Extent& other);
 };
 
-/// Right-handed axes of the viewer: where a scene's points lie, in world units, the third along the view.
+/// The viewer's right-handed coordinates, in world units; the third axis is the view direction.
 struct ViewAxes {
     dvec3 from{0, 0, 0};
     dvec3 right{1, 0, 0};
@@ -32,8 +32,8 @@ struct ViewAxes {
     dvec3 point(const dvec3& p) const { return direction(p - from); }
 };
 
-/// Depth range of the part of a primitive's surface inside a field of view, in coordinates of the axes:
-/// closed forms, whose time depends neither on the primitive's size nor on how it will be tessellated.
+/// Depth range of the part of a primitive's surface inside a field of view, in coordinates of the axes. Uses
+/// closed forms, so the time depends neither on the primitive's size nor on its tessellation.
 Extent visible_extent(const Primitive& primitive, const ViewAxes& axes, const std::vector<HalfSpace>& field);
 
 }  // namespace raycell

@@ -15,11 +15,11 @@ void hold(Polygon& polygon, const Arithmetic& arithmetic) {
         v = arithmetic.hold(word, v);
         centre += v / double(polygon.vertices.size());
     }
-    // Rounded upwards: half a last bit more than what it may be, then to the nearest.
+    // Rounds upwards: half a last bit more than the bound of 2 * slack + 4 last bits, then to the nearest.
     polygon.slack = arithmetic.hold(word, polygon.slack * 2 + 4.5 * word.step());
     polygon.plane = hold_plane(polygon.plane, polygon.drop, centre, word, word);
     const dvec2 middle = project(centre, polygon.drop);
-    // An eighth of the range: the field's value at another cell may be larger than that at the origin.
+    // Uses an eighth of the range: the field may be larger at another cell than at the origin.
     const double most = scale_by(1, word.integer_bits() - 4);
     polygon.normal = fill_words(polygon.normal, middle, most, 1024 * word.step());
     polygon.normal = hold_field(polygon.normal, middle, word, word);

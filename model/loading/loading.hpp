@@ -1,4 +1,4 @@
-// Loading without time: the same geometry, trapezes, spans and voxels that the timed stages pass on.
+// Untimed loading: makes the same polygons, trapezes, spans and voxels as the timed stages.
 #pragma once
 
 #include <vector>
@@ -10,11 +10,11 @@
 namespace raycell {
 
 /// Cuts a polygon to the cube; false if nothing is left. Plane and normals stay those of the whole polygon.
-/// In fixed arithmetic the result is what the geometry stage sends: loading words. A polygon whose normals
-/// turn too fast for them gets the normal of its middle.
+/// In fixed arithmetic the result consists of loading words, as the geometry stage sends them. A polygon
+/// whose normals turn too fast for these words gets the normal of its middle.
 bool clip_to_cube(Polygon& polygon, const Box& cube, const Arithmetic& arithmetic);
 
-/// What loading handled, for the statistics.
+/// Numbers of items that loading handled, for the statistics.
 struct LoadCounts {
     std::uint64_t polygons = 0;  ///< that reach into the cube
     std::uint64_t trapezes = 0;
@@ -23,7 +23,7 @@ struct LoadCounts {
     std::uint64_t overflowed = 0;
 };
 
-/// The loaded array, row-major. Throws nothing: what does not fit a cell is counted in it.
+/// Loads the array; cells are row-major. Throws nothing: each cell counts the voxels that do not fit.
 std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings& settings,
                                   const Arithmetic& arithmetic, LoadCounts* counts = nullptr);
 

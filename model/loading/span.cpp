@@ -8,7 +8,7 @@
 namespace raycell {
 namespace {
 
-/// Below this |n_z| the plane's depth functions mean nothing; the bounds of the row's part hold.
+/// Below this |n_z| the plane's depth functions are useless; the bounds of the row's part are used instead.
 constexpr double least_facing = 1e-5;
 
 std::vector<dvec3> row_part(const Trapeze& trapeze, int row) {
@@ -35,11 +35,11 @@ void set_depth_functions(Span& span, double y_low, double y_high) {
     span.d_near = span.d_far = by_x;
 }
 
-/// Rounds what the row computed to loading words; the rest are sums of such already.
+/// Rounds the values that the row computed to loading words. All others are already sums of loading words.
 void hold(Span& span, const Format& word) {
     const double steep = word.most() / 4;
     if (std::abs(span.d_near) > steep || std::abs(span.near) > steep || std::abs(span.far) > steep) {
-        // As for a plane without depth functions: the bounds hold.
+        // Too steep for words: uses the bounds, as for a plane without depth functions.
         span.near = span.z_min;
         span.far = span.z_max;
         span.d_near = span.d_far = 0;
@@ -57,7 +57,8 @@ void hold(Span& span, const Format& word) {
     }
 }
 
-/// Classic Gouraud: intensities on the left and right side at the middle of the row's part, linear between.
+/// Classic Gouraud: takes the intensities on the left and the right side at the middle of the row's part, and
+/// interpolates linearly between them.
 void set_intensity(Span& span, const Trapeze& trapeze, const CornerIntensities& shades, double y) {
     double left = 1e300;
     double right = -1e300;
@@ -135,7 +136,7 @@ std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width, const A
 }
 
 void advance(Span& span, const Arithmetic& arithmetic) {
-    // Increments and what they are added to have the same last bit: nothing drifts along a row.
+    // Increments and the values they are added to have the same last bit, so that nothing drifts along a row.
     const Format& word = arithmetic.formats().loading;
     ++span.x;
     span.plane.c -= span.plane.n.x;

@@ -15,22 +15,22 @@ namespace raycell {
 struct Span {
     std::uint32_t polygon = 0;
     std::uint32_t object = 0;
-    int x = 0;     ///< the cell that it is relative to: X1 first
+    int x = 0;     ///< current cell, which all is relative to: X1 at first
     int last = 0;  ///< Xr, the last cell that it touches
     Plane plane;
     int drop = 2;
     NormalField normal;
     std::array<EdgeFunction, 4> edges;
     int edge_count = 0;
-    double near = 0;    ///< Z: smallest depth over the cell, before the bounds below
+    double near = 0;    ///< Z: smallest depth over the cell, before z_min and z_max are applied
     double d_near = 0;  ///< DZx of near
     double far = 0;
     double d_far = 0;
-    double z_min = 0;  ///< bounds of the row's part: for edge-on planes they are all there is
+    double z_min = 0;  ///< depth bounds of the row's part; edge-on planes have nothing else
     double z_max = 0;
     dvec3 slack{0, 0, 0};  ///< Trapeze::slack
-    /// What edges and bounds enclose, relative to the cell; a cell derives it, the model carries it to save
-    /// its own time.
+    /// Outline of the area inside edges and bounds, relative to the cell. A cell derives it; the model
+    /// carries it to save its own time.
     std::array<dvec3, 8> outline;
     int outline_count = 0;
     dvec3 intensity{0, 0, 0};  ///< Gouraud: intensity at the cell's centre (only --display gouraud)
@@ -40,14 +40,14 @@ struct Span {
 /// Intensities of a trapeze's corners, in the order of its corners (Gouraud).
 using CornerIntensities = std::array<dvec3, 4>;
 
-/// The part of a trapeze in row `row` of an array `width` cells wide; empty where it has none.
+/// Returns the part of a trapeze in row `row` of an array `width` cells wide; empty if there is none.
 std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width, const Arithmetic& arithmetic,
                              const CornerIntensities* intensities = nullptr);
 
 /// Moves a span one cell to the east.
 void advance(Span& span, const Arithmetic& arithmetic);
 
-/// Shades the corners of a trapeze without shadows, seen along z: what Gouraud interpolates.
+/// Shades the corners of a trapeze for Gouraud interpolation: seen along z, without shadows.
 CornerIntensities shade_corners(const Trapeze& trapeze, const CellScene& scene);
 
 }  // namespace raycell

@@ -10,7 +10,7 @@ namespace {
 
 /// Below this height in y (cells) a polygon is cut along another axis.
 constexpr double least_sweep_height = 1.0 / 64;
-/// Slabs thinner than this hold nothing that a ray could meet between the edges' hair.
+/// Thinner slabs are skipped: the tolerance of the edges covers them.
 constexpr double least_slab = 1e-10;
 
 int sweep_axis(const std::vector<dvec3>& outline) {
@@ -32,7 +32,7 @@ struct Side {
 };
 
 dvec3 point_at(const Side& side, int axis, double s) {
-    // From the same end for both neighbours of a side, so that they get the same point.
+    // Always from the same end, so that both neighbours of a side get the same point.
     const bool forward = side.a[axis] < side.b[axis];
     const dvec3& from = forward ? side.a : side.b;
     const dvec3& to = forward ? side.b : side.a;
@@ -43,10 +43,10 @@ dvec3 point_at(const Side& side, int axis, double s) {
     return p;
 }
 
-/// A sweep: of the sides, only those that cross the slab at hand are looked at.
+/// Cuts a polygon into trapezes by a sweep that looks only at the sides that cross the current slab.
 class Cutter {
   public:
-    /// `shared`: what lies this near to a cell's border belongs to both cells.
+    /// `shared`: distance from a cell's border, in cells, within which a point belongs to both cells.
     Cutter(const Polygon& polygon, double shared)
         : polygon_(polygon), shared_(shared), axis_(sweep_axis(polygon.vertices)) {
         dvec3 unit{0, 0, 0};
@@ -57,7 +57,7 @@ class Cutter {
     std::vector<Trapeze> run() {
         const auto& v = polygon_.vertices;
         std::vector<double> levels;
-        std::vector<std::uint32_t> starts;  // sides, by their beginnings
+        std::vector<std::uint32_t> starts;  // sides, sorted by their beginnings
         for (std::uint32_t i = 0; i < v.size(); ++i) {
             levels.push_back(v[i][axis_]);
             starts.push_back(i);
@@ -87,7 +87,7 @@ class Cutter {
     }
 
   private:
-    struct Crossing {  // of a side with the middle of a slab
+    struct Crossing {  // of a side and the middle of a slab
         double place;
         std::uint32_t side;  ///< index of its first vertex
         bool operator<(const Crossing& o) const {
@@ -98,11 +98,11 @@ class Cutter {
         double begin;
         double end;
         double u;   ///< place at the beginning
-        double du;  ///< and what is added to it up to the end
+        double du;  ///< change from the beginning to the end
         double v;
         double dv;
     };
-    struct Open {  // a trapeze whose two sides run on into the next slab
+    struct Open {  // a trapeze whose two sides may continue in the next slab
         std::uint32_t left;
         std::uint32_t right;
         double s0;
@@ -113,7 +113,7 @@ class Cutter {
         const auto& v = polygon_.vertices;
         return {v[i], v[i + 1 < v.size() ? i + 1 : 0]};
     }
-    /// What point_at takes of a side, in the two axes beside the sweep's.
+    /// The values that point_at needs of a side, in the two axes other than the sweep's.
     Run run_of(const Side& side) const {
         const bool forward = side.a[axis_] < side.b[axis_];
         const dvec3& from = forward ? side.a : side.b;
@@ -123,8 +123,8 @@ class Cutter {
         return {from[axis_], to[axis_], from[u], to[u] - from[u], from[v], to[v] - from[v]};
     }
 
-    /// The first `running` crossings have the order of the slab before, which is theirs here too unless sides
-    /// cross.
+    /// Sorts the crossings. The first `running` ones are still in the order of the previous slab, which is
+    /// right unless sides cross.
     void order_crossings(std::ptrdiff_t running, double middle) {
         const double along_u = axis_ == 0 ? along_.y : along_.x;
         const double along_v = axis_ == 2 ? along_.y : along_.z;
@@ -139,8 +139,8 @@ class Cutter {
         std::inplace_merge(crossings_.begin(), fresh, crossings_.end());
     }
 
-    /// Trapezes of the slab that begins at s0: those with the same two sides as one of the slab before go on
-    /// with it.
+    /// Makes the trapezes of the slab that begins at s0. A trapeze with the same two sides as one of the
+    /// previous slab continues it.
     void slab(double s0) {
         next_.clear();
         for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
@@ -191,8 +191,8 @@ class Cutter {
         side_edge(t, right, inside);
         cut_edge(t, open.s0, 1);
         cut_edge(t, s1, -1);
-        // Hit points lie on the plane, the outline perhaps a little off it, and the neighbour's plane off the
-        // other way.
+        // Hit points lie on the plane. The outline may lie a little off it, and the neighbour's plane may be
+        // off the other way: twice the slack.
         for (int i = 0; i < t.edge_count; ++i) t.edges[std::size_t(i)].c += 2 * polygon_.slack;
         t.top = t.bottom = ring[0].y;
         for (const dvec3& p : ring) {
@@ -213,7 +213,7 @@ class Cutter {
         t.edges[std::size_t(t.edge_count++)] = edge;
     }
 
-    /// The side at sweep position s, inside where sign·(p[axis] − s) >= 0, as a function of (u, v).
+    /// Adds the edge at sweep position s as a function of (u, v): inside where sign·(p[axis] − s) >= 0.
     void cut_edge(Trapeze& t, double s, double sign) const {
         const Projection axes = projection(t.drop);
         EdgeFunction edge;
@@ -221,7 +221,7 @@ class Cutter {
             edge = {sign, 0, -sign * s, 0};
         } else if (axis_ == axes.v) {
             edge = {0, sign, -sign * s, 0};
-        } else {  // the sweep's own axis is the dropped one: it is a function of (u, v) on the plane
+        } else {  // the sweep's axis is dropped: on the plane it is a function of (u, v)
             const dvec3& n = t.plane.n;
             const double slope = std::hypot(n[axes.u], n[axes.v]);
             if (!(slope > 0)) return;
@@ -236,10 +236,10 @@ class Cutter {
     int axis_;
     dvec3 along_;
     std::vector<Run> runs_;            ///< per side
-    std::vector<Crossing> crossings_;  ///< of the slab at hand, from left to right
+    std::vector<Crossing> crossings_;  ///< of the current slab, from left to right
     std::vector<Open> open_;
     std::vector<Open> next_;
-    std::vector<std::size_t> opened_by_;  ///< per side: the index in `open_` that it is the left one of
+    std::vector<std::size_t> opened_by_;  ///< per side: index in `open_` of the trapeze whose left side it is
     std::vector<Trapeze> trapezes_;
 };
 
@@ -254,7 +254,8 @@ EdgeFunction hold_edge(const EdgeFunction& edge, const dvec2& anchor, const Form
 }
 
 std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithmetic) {
-    // Surfaces that a ray meets at once on a border are compared in one cell, whichever it is.
+    // Both cells at a border get what lies near it, so that one cell, whichever it is, compares all surfaces
+    // that a ray meets at the same distance on the border.
     std::vector<Trapeze> trapezes = Cutter(polygon, arithmetic.exact() ? 2 * exact_hair : 0).run();
     if (arithmetic.exact()) return trapezes;
     const Format& word = arithmetic.formats().loading;

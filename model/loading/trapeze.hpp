@@ -1,4 +1,4 @@
-// Precomputation: polygons into trapezes (paper, section 2.2).
+// Precomputation: cuts polygons into trapezes (paper, section 2.2).
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace raycell {
 
-/// Inside where a·u + b·v + c >= 0 in the projection of the polygon's plane; (a, b) is unit, so the value is
-/// a distance in cells. `piece` tells which convex piece of a voxel the edge belongs to.
+/// An edge of a trapeze: a·u + b·v + c >= 0 inside, in the projection of the polygon's plane. (a, b) is unit,
+/// so the value is a distance in cells. `piece` tells which convex piece of a voxel the edge belongs to.
 struct EdgeFunction {
     double a = 0;
     double b = 0;
@@ -20,8 +20,8 @@ struct EdgeFunction {
     double at(const dvec2& uv) const { return a * uv.x + b * uv.y + c; }
 };
 
-/// An edge in words: (a, b) rounded to `slope`, then c taken from these at `anchor`, a point near the edge,
-/// and rounded to `offset`.
+/// Rounds an edge to words: (a, b) to `slope`; then c, computed from the rounded (a, b) at `anchor`, a point
+/// near the edge, to `offset`.
 EdgeFunction hold_edge(const EdgeFunction& edge, const dvec2& anchor, const Format& slope,
                        const Format& offset);
 
@@ -39,14 +39,14 @@ struct Trapeze {
     int edge_count = 0;
     double top = 0;        ///< smallest y, cells
     double bottom = 0;     ///< largest y, cells
-    dvec3 slack{0, 0, 0};  ///< Polygon::slack, along the dropped axis; exact arithmetic: and what cells share
+    dvec3 slack{0, 0, 0};  ///< Polygon::slack on the dropped axis; exact arithmetic: plus what cells share
     /// First row of an array of `height` rows that it touches.
     int first_row(int height) const { return std::clamp(int(top - slack.y), 0, height - 1); }
-    /// True when a row below `row` still has a part of it.
+    /// True if a row below `row` still has a part of the trapeze.
     bool reaches_below(int row) const { return bottom + slack.y > row + 1; }
 };
 
-/// Cuts a polygon that lies inside the cube into trapezes; in fixed arithmetic, of loading words.
+/// Cuts a polygon that lies inside the cube into trapezes; in fixed arithmetic they consist of loading words.
 std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithmetic);
 
 }  // namespace raycell

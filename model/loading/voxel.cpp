@@ -43,7 +43,8 @@ bool covers_centre(const Span& span, double hair, double& z) {
     return true;
 }
 
-/// Bounds of the part inside the cell; with the edges they tell exactly what a convex part touches.
+/// Bounds of the part inside the cell; together with the edges they tell exactly which sub-cells a convex
+/// part touches.
 Rectangle part_bounds(const std::vector<dvec3>& part, int drop) {
     Rectangle bounds{dvec2(1e300), dvec2(-1e300)};
     for (const dvec3& p : part) {
@@ -91,7 +92,7 @@ std::uint64_t coverage(const EdgeFunction* edges, int count, const Rectangle& wh
     return mask;
 }
 
-/// The span's part inside the cell that it is at; empty where the bounding row part only passes by.
+/// The span's part inside its current cell; empty if the row's part only passes by.
 std::vector<dvec3> cell_part(const Span& span) {
     std::vector<dvec3> part(span.outline.begin(), span.outline.begin() + span.outline_count);
     bool left = false;
@@ -111,7 +112,7 @@ dvec3 hold_point(const dvec3& point, const Arithmetic& arithmetic) {
             arithmetic.hold(f.depth, point.z)};
 }
 
-/// Mean of the corners, and area.
+/// Sets the voxel's point (mean of the corners) and area.
 void set_point(Voxel& voxel, const std::vector<dvec3>& part) {
     dvec3 sum{0, 0, 0};
     for (const dvec3& p : part) sum += p;
@@ -121,7 +122,8 @@ void set_point(Voxel& voxel, const std::vector<dvec3>& part) {
     voxel.area = 0.5 * glm::length(newell(part));
 }
 
-/// Plane and normal field of the voxel, from the span's: in words, right in the middle of the polygon's part.
+/// Sets the voxel's plane and normal field from the span's. In words they are right in the middle of the
+/// polygon's part.
 void set_functions(Voxel& voxel, const Span& span, Normals normals, const Arithmetic& arithmetic) {
     const dvec2 own = project(voxel.point, voxel.drop);
     voxel.plane = span.plane;
@@ -141,13 +143,13 @@ void set_functions(Voxel& voxel, const Span& span, Normals normals, const Arithm
     voxel.normal = hold_field(field, anchor, formats.normal, formats.normal);
 }
 
-/// The run's ends; moves what is relative to its beginning along with it.
+/// Sets the run's ends, and moves the edges, which are relative to its beginning, along with it.
 void set_run(Voxel& voxel, CellStore& store, double level, const Arithmetic& arithmetic) {
     const Formats& formats = arithmetic.formats();
     voxel.near = arithmetic.hold(formats.depth, voxel.near_level * level);
     voxel.far = arithmetic.hold(formats.depth, voxel.far_level * level);
     if (arithmetic.exact()) return;
-    // Levels finer than the word's last bit: a run is never empty.
+    // Levels may be finer than the word's last bit, but a run is never empty.
     voxel.far = std::max(voxel.far, voxel.near + formats.depth.step());
     if (voxel.base == voxel.near) return;
     const double shift = voxel.near - voxel.base;
@@ -195,7 +197,7 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
     if (part.empty()) return false;  // only touches the cell's side: the neighbour has it
     double near = std::max(span.near, span.z_min);
     double far = std::min(span.far, span.z_max);
-    // Where a side crosses the cell, the plane runs on past it: the run is that of the part inside.
+    // Where a side crosses the cell, the plane continues past it; so the run is limited to the part inside.
     double part_near = part.front().z;
     double part_far = part.front().z;
     for (const dvec3& p : part) {
@@ -242,7 +244,8 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
             edge = voxel_edge(edge, voxel, whole, arithmetic);
         }
     }
-    // The pieces of one polygon come one after the other. A mask belongs to its own window: kept apart.
+    // The pieces of one polygon arrive one after the other. Mask voxels are not merged: each mask has its own
+    // window.
     const bool mergeable = settings.hit != HitTest::mask;
     if (mergeable && !store.voxels.empty() && store.voxels.back().polygon == span.polygon) {
         Voxel& before = store.voxels.back();
@@ -257,7 +260,7 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
                 for (int i = 0; i < crossings; ++i) {
                     EdgeFunction edge = crossing[std::size_t(i)];
                     edge.piece = before.pieces;
-                    if (before.drop != 2 && before.base != voxel.base) {  // the run began nearer before
+                    if (before.drop != 2 && before.base != voxel.base) {  // the merged run begins nearer
                         edge.c = arithmetic.mac(arithmetic.formats().edge_offset, edge.c, edge.b,
                                                 before.base - voxel.base);
                     }
@@ -324,10 +327,10 @@ VoxelBits voxel_bits(const PictureSettings& settings, const Formats& formats, st
     // One depth, one normal: the paper's voxel.
     bits.base = field::polygon_id + feature_bits(formats) + level_bits + 3 * word;
     if (settings.hit != HitTest::depth) bits.base += level_bits;
-    // Two slopes and an offset; which axis they are for, and its sign.
+    // Two slopes and an offset; 3 bits for their axis and its sign.
     if (settings.hit >= HitTest::plane) bits.base += 3 * word + 3;
-    if (settings.hit == HitTest::mask) bits.base += 64 + 4 * 5;  // coverage and its window
-    if (settings.hit == HitTest::edge) bits.base += field::edge_count;           // how many edges follow
+    if (settings.hit == HitTest::mask) bits.base += 64 + 4 * 5;         // coverage and its window
+    if (settings.hit == HitTest::edge) bits.base += field::edge_count;  // how many edges follow
     if (settings.normals == Normals::linear) bits.base += 6 * word;
     if (settings.shadows != Shadows::per_hit) {
         bits.base += int(sources) * (settings.shadows == Shadows::memo ? 2 : 1);

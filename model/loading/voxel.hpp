@@ -9,16 +9,17 @@
 
 namespace raycell {
 
-/// The run of depth levels that a polygon takes up in one cell, and what the rung above `interval` adds to
-/// it. Lengths in cell widths; plane, edges and normal field relative to the cell's corner and `base`.
+/// The run of depth levels that a polygon takes up in one cell, and what the rungs above `interval` add to
+/// it. Lengths are in cell widths; plane, edges and normal field are relative to the cell's corner and to
+/// `base`.
 struct Voxel {
     std::uint32_t polygon = 0;
     std::uint32_t object = 0;
     std::int32_t near_level = 0;  ///< first depth level
     std::int32_t far_level = 0;   ///< one past the last
-    double near = 0;              ///< depth of the run's beginning: follows from near_level
-    double far = 0;               ///< and of its end
-    double base = 0;              ///< what z is relative to: 0 in exact arithmetic, `near` in words
+    double near = 0;              ///< depth of the run's beginning, from near_level
+    double far = 0;               ///< depth of the run's end, from far_level
+    double base = 0;              ///< z origin of the functions: 0 in exact arithmetic, `near` in words
     Plane plane;
     NormalField normal;
     std::uint8_t drop = 2;
@@ -27,18 +28,20 @@ struct Voxel {
     std::uint32_t first_edge = 0;  ///< index into CellStore::edges
     std::uint64_t mask = 0;        ///< bit 8·row + column, over the window
     /// The mask's window: u from, u to, v from, v to, in 32nds of the cell (of the run where an axis is z).
-    /// It frames the polygon's part, so that the 64 bits lie where there is something to tell apart.
+    /// It frames the polygon's part, so that all 64 bits describe that part.
     std::array<std::uint8_t, 4> window{0, 32, 0, 32};
     dvec3 point{0, 0, 0};  ///< the voxel's own point (z absolute): precast and memo shadows, `voxel` normals
     double area = 0;       ///< of the polygon in the cell, while loading: weight of `point` in a merge
 };
 
-/// What a ray is compared with first, of a voxel: apart from the rest, so that a cell's stand side by side.
+/// Depth range of a voxel, which a ray is compared with first. Stored apart from the voxel, so that the
+/// ranges of a cell are contiguous in memory.
 struct DepthRun {
     double near = 0;
     double far = 0;
 };
-/// Those of all voxels of a cell, as its comparators hold them; none: they are read from the voxels.
+/// The depth runs of all voxels of a cell, as its comparators hold them; if null, they are read from the
+/// voxels.
 struct DepthRuns {
     const DepthRun* first = nullptr;
     std::uint32_t count = 0;
@@ -52,25 +55,25 @@ struct CellStore {
     std::vector<std::uint64_t> lit;              ///< per voxel, a bit per source (precast, memo)
     std::vector<std::uint64_t> known;            ///< per voxel, a bit per source already asked for (memo)
     std::uint32_t overflowed = 0;                ///< voxels that did not fit
-    std::uint32_t last_overflowed = no_polygon;  ///< whose voxel was the last of them
+    std::uint32_t last_overflowed = no_polygon;  ///< polygon of the last voxel that did not fit
 };
 
-/// Makes the voxel of the cell that the span is at and stores it, or adds it to the voxel that the same
-/// polygon has there already. Returns false if the polygon turns out not to touch the cell (or, at rung
-/// `depth`, not to cover its centre), or if the store is full; then `overflowed` counts it.
+/// Makes the voxel of the span's current cell and stores it, or (except at rung `mask`) adds it to the voxel
+/// that the same polygon already has there. Returns false if the polygon does not touch the cell (at rung
+/// `depth`: does not cover its centre), or if the store is full; then `overflowed` counts it.
 bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level,
                  const Arithmetic& arithmetic);
 
 constexpr int window_steps = 32;
 
-/// Bits that one voxel takes, without its edges, and bits of one edge; docs/reference/cell.md has the table.
+/// Bits of one voxel without its edges, and bits of one edge; docs/reference/cell.md has the table.
 struct VoxelBits {
     int base = 0;
     int per_edge = 0;
 };
 VoxelBits voxel_bits(const PictureSettings& settings, const Formats& formats, std::size_t sources);
 
-/// What an array of cells stores.
+/// Storage totals over an array of cells.
 struct StorageCounts {
     std::uint64_t voxels = 0;
     std::uint64_t edges = 0;
