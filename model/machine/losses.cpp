@@ -13,7 +13,7 @@ double largest_feature(const Material& m) {
     return std::max({brightest(m.colour), m.diffuse, m.specular, m.transmit});
 }
 
-/// An index of refraction and its reciprocal are both held.
+/// Both the index of refraction and its reciprocal must fit.
 bool index_fits(const Material& m, const Formats& f) {
     return m.transmit == 0 || (m.ior <= f.ior.most() && 1 / m.ior <= f.normal.most());
 }

@@ -1,4 +1,4 @@
-// What travels over the links, and how many bits each kind takes there.
+// The messages on the links, and how many bits each kind takes.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace raycell {
 
-/// The way back: an intensity, a verdict on a source, or the notice that a ray was destroyed and must be sent
-/// again.
+/// A message on the way back: an intensity, a verdict on a source, or a postponed notice, which says that a
+/// ray was destroyed and must be sent again.
 struct Answer {
     enum class Kind : std::uint8_t { intensity, lit, blocked, postponed };
     dvec3 colour{0, 0, 0};
@@ -43,19 +43,19 @@ struct MessageBits {
 MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
                          const Formats& formats);
 
-/// Cycles that `bits` take over a link of `link_bits`.
+/// Cycles that a message of `bits` takes over a link of `link_bits` per cycle.
 constexpr int link_cycles(int bits, int link_bits) { return (bits + link_bits - 1) / link_bits; }
 
 /// Buffer classes of a link: which messages share a buffer (design, section 5).
 struct BufferClasses {
-    int count = 2;   ///< buffers that an index below may name
+    int count = 2;   ///< number of classes; their indices start at 0
     int answer = 1;  ///< class of answers
     int ray(const Ray& r) const;
     bool holds_answers(int index) const { return index == answer; }
     bool holds_rays(int index) const { return index != answer || count == 1; }
     bool used(int index, bool horizontal,
               Side side) const;  ///< whether a link in this direction has the buffer
-    /// The classes, as bits, of a link over this side of its source.
+    /// Bit set of the classes used on a link that leaves its source over this side.
     std::uint32_t used_over(Side side) const;
     Networks networks = Networks::split;
 };

@@ -4,7 +4,7 @@ namespace raycell {
 namespace {
 
 Need ends_in(const Ray& ray, Answer::Kind answer) {
-    const bool silent = ray.kind == RayKind::precast && answer == Answer::Kind::lit;  // no news is good news
+    const bool silent = ray.kind == RayKind::precast && answer == Answer::Kind::lit;  // silence means lit
     Need need;
     need.kind = silent ? Need::Kind::nothing : Need::Kind::response;
     need.answer = answer;

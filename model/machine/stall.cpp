@@ -5,7 +5,7 @@
 namespace raycell {
 
 std::uint64_t mix_bits(std::uint64_t a, std::uint64_t b) {
-    // SplitMix64's finaliser, after a's bits were spread.
+    // SplitMix64's finaliser, after the bits of a are spread.
     std::uint64_t z = a * 0x9e3779b97f4a7c15ULL ^ (b + 0x632be59bd9b4e019ULL);
     for (int round = 0; round < 2; ++round) {
         z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ULL;

@@ -23,13 +23,14 @@ void for_each_buffer(const BufferClasses& classes, const See& see) {
     }
 }
 
-/// A ray's stage 2 (untested, in test, decided); what it needs 3, over which side or with which answer 2,
-/// leaves the array 1, is lost 1; voxel and distance.
+/// Bits of what is decided about a ray: its stage 2 (untested, in test, decided), what it needs 3, side or
+/// kind of answer 2, leaves the array 1, lost 1, voxel, distance.
 int decision_bits(const Formats& formats) {
     return 2 + 3 + 2 + 1 + 1 + field::voxel_index + formats.distance.bits();
 }
 
-/// Shortest back-off to the longest, which is doubled six times and at most once more by the jitter.
+/// Bits of attempts and back-off. The longest back-off is the shortest, doubled six times and at most once
+/// more by the jitter.
 int retry_bits(const MachineSettings& machine) {
     if (machine.recovery != Recovery::postpone) return 0;
     constexpr int attempts = 3;
@@ -39,7 +40,7 @@ int retry_bits(const MachineSettings& machine) {
 /// Home, slot and child: where a ray's answer goes.
 int address_bits(const MessageBits& messages) { return messages.verdict - field::type; }
 
-/// The longest ray that a cell sends; `children`: a slot's, else the cell's own.
+/// Bits of the longest ray that a slot sends (`children`), or that is the cell's own ray (not `children`).
 int sent_ray_bits(const PictureSettings& picture, const MessageBits& messages, std::size_t sources,
                   bool children) {
     const bool shadow_rays =
@@ -47,7 +48,7 @@ int sent_ray_bits(const PictureSettings& picture, const MessageBits& messages, s
     return std::max(messages.ray, sources > 0 && shadow_rays ? messages.shadow_ray : 0);
 }
 
-/// Counts the cycles that a message of so many bits takes on a link.
+/// Bits of a counter of the cycles that a message of `bits` takes on a link.
 int wire_bits(const MachineSettings& machine, int bits) {
     return bits_for(link_cycles(bits, machine.link_bits) + 1);
 }
@@ -75,8 +76,8 @@ SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machin
 
 namespace {
 
-/// The nearest hit so far, where the cell ends and the ray's own depths there, counters over voxels and
-/// edges, the ray's place and where the next round begins, a point, a sum.
+/// Bits of the traversal unit's registers: nearest hit so far, crossing, the ray's depth run in the cell,
+/// counters over voxels and edges, places of the ray and of the next round's beginning, a point, a sum.
 int traversal_bits(const MachineSettings& machine, const Formats& formats, int ray_inputs) {
     const int distance = formats.distance.bits();
     const int nearest = 1 + distance + field::voxel_index;
@@ -88,9 +89,9 @@ int traversal_bits(const MachineSettings& machine, const Formats& formats, int r
     return nearest + crossing + run + counters + places + point + formats.accumulator.bits();
 }
 
-/// The job 3 and its slot, counter over sources; three vectors (to the source, half way, mirrored), the
-/// distance to the source, the intensity so far, a sum. For hits without a slot: the ray and the hit, and the
-/// answer on its way out.
+/// Bits of the shading unit's registers: job 3, its slot, counter over sources; three vectors (to the source,
+/// half way, mirrored), distance to the source, intensity so far, a sum. For a hit without a slot: the ray,
+/// the hit, and the reply on its way out.
 int shading_bits(const SlotBits& slot, const MachineSettings& machine, const MessageBits& messages,
                  const Formats& formats) {
     const int vector = 3 * formats.word_bits;

@@ -1,5 +1,5 @@
-// What a cell must store, bit by bit, beside its voxels: buffers, ray store, registers.
-// docs/reference/cell.md has the tables.
+// Bits that a cell must store beside its voxels: buffers, ray store, registers. docs/reference/cell.md has
+// the tables.
 #pragma once
 
 #include "model/machine/message.hpp"
@@ -12,7 +12,7 @@ struct SlotBits {
     int ray = 0;       ///< of the ray that hit: where its answer goes, kind, generation, weight, direction
     int hit = 0;       ///< point, normal, side
     int children = 0;  ///< their directions; sent, awaited, intensity; with recovery attempts and back-off
-    int sources = 0;   ///< a bit each for to ask, awaited, lit, as the shadow mode needs them
+    int sources = 0;   ///< per source a bit for to ask, awaited, lit, as far as the shadow mode needs them
     int out = 0;       ///< register of the child on its way out: a ray, what was decided about it, its age
     int total() const { return control + ray + hit + children + sources + out; }
 };
@@ -25,12 +25,12 @@ SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machin
 struct RegisterBits {
     int own_ray = 0;    ///< the injector's: a ray; whether it is to be sent, awaited; its back-off
     int decisions = 0;  ///< of each ray input and the own ray, once it is tested
-    int ages = 0;       ///< of each input, the own ray and the shading unit's answer: oldest first
+    int ages = 0;       ///< of each input, the own ray and the shading unit's reply: oldest first
     int credits = 0;    ///< places left behind each output, by class; cycles until wires are free
     int outputs = 0;    ///< the message that leaves over each side, while its place is taken by the next
     int traversal = 0;  ///< working registers of the traversal unit
-    int shading = 0;    ///< of the shading unit, with the hit and the answer that have no slot
-    int loading = 0;    ///< of the loading unit: what of a span its buffer does not hold
+    int shading = 0;    ///< of the shading unit, with a hit that has no slot and its reply
+    int loading = 0;    ///< of the loading unit: the part of a span that its buffer does not hold
     int latches = 0;    ///< viewer, background and sources, from the load messages
     int total() const {
         return own_ray + decisions + ages + credits + outputs + traversal + shading + loading + latches;
@@ -41,8 +41,8 @@ RegisterBits register_bits(const PictureSettings& picture, const MachineSettings
 
 /// What a cell with four neighbours stores, bits.
 struct StorageBits {
-    std::int64_t ray_buffers = 0;     ///< of its four input links; a buffer's words hold the widest message
-    std::int64_t answer_buffers = 0;  ///< 0 with `shared`: answers stand among the rays
+    std::int64_t ray_buffers = 0;     ///< of its four inputs; each as wide as the widest message of its class
+    std::int64_t answer_buffers = 0;  ///< 0 with `shared`: answers use the ray buffers
     std::int64_t ray_store = 0;       ///< M slots
     std::int64_t registers = 0;
     std::int64_t buffers() const { return ray_buffers + answer_buffers; }

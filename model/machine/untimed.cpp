@@ -117,7 +117,7 @@ UntimedMachine::Answer UntimedMachine::trace(Ray ray, int x, int y, Pixel* pixel
                 const Face face = face_of_depth(ray);
                 if (beyond_face(context_, face) == Beyond::nothing) return leave(ray, face, {}, at, pixel);
                 start_outside(ray, visit.hit.t, context_.arithmetic);
-                continue;  // this cell only passes it on now
+                continue;  // now this cell only passes it on
             }
             case Visit::Event::forward:
                 break;
@@ -148,7 +148,7 @@ UntimedMachine::Answer UntimedMachine::leave(const Ray& ray, Face face, const Cr
         } else {
             answer.colour = exterior_answer(context_, exterior_->radiance(request, ray, pixel));
         }
-        // To the exterior over the border link, and back unless there is nothing to tell.
+        // One hop to the exterior over the border link, and one back if there is an answer.
         const unsigned hops = ray.kind == RayKind::precast && !answer.blocked ? 1 : 2;
         rays_.return_hops += hops;
         if (pixel) pixel->hops += hops;

@@ -19,7 +19,7 @@ struct RayCounts {
     std::uint64_t precast = 0;
     std::uint64_t lost = 0;      ///< left the cube with nothing beyond, or with --exterior none
     std::uint64_t exterior = 0;  ///< handed to the exterior processors
-    std::uint64_t ties = 0;      ///< hits at the same distance as another, of rays sent again too
+    std::uint64_t ties = 0;      ///< hits at the same distance as another, including those of rays sent again
     std::uint64_t ray_hops = 0;
     std::uint64_t return_hops = 0;
 };
@@ -28,9 +28,9 @@ void count_ray(RayCounts& counts, RayKind kind);
 
 class UntimedMachine {
   public:
-    /// `exterior` may be null when settings.exterior is none, or nothing is traced. Loads the array. The
-    /// scene must outlive the machine; the settings are copied. Throws std::invalid_argument without the
-    /// exterior it needs. With `traffic` what rays meet is drawn; it must outlive the machine.
+    /// Loads the array. `exterior` may be null if settings.exterior is none or nothing is traced. With
+    /// `traffic`, hits are drawn at random. The scene and `traffic` must outlive the machine; the settings
+    /// are copied. Throws std::invalid_argument if a needed exterior is missing.
     UntimedMachine(const CellScene& scene, const PictureSettings& settings, const ExteriorTracer* exterior,
                    const SyntheticTraffic* traffic = nullptr);
 
@@ -38,7 +38,7 @@ class UntimedMachine {
     Picture render(const std::function<void(int row)>& progress = {});
 
     const RayCounts& rays() const { return rays_; }
-    /// Of all hops of rays and answers, those before tracing began.
+    /// Hops of rays and answers before tracing began.
     std::uint64_t precast_hops() const { return precast_hops_; }
     const LoadCounts& loaded() const { return loaded_; }
     const std::vector<CellStore>& cells() const { return cells_; }

@@ -9,7 +9,7 @@
 namespace raycell {
 namespace {
 
-/// Bits of the integers below `reach`.
+/// Number of bits of the integers below `reach`.
 int bits_to(double reach) {
     int bits = 0;
     while (std::ldexp(1.0, bits) < reach) ++bits;
@@ -22,10 +22,10 @@ double diagonal(const ArrayExtent& e) {
 
 constexpr int wide_scale = 80;
 
-/// a·b·2^wide_scale. What lies behind its last bit (only where a reciprocal is tiny) stays as a sticky bit.
+/// a·b·2^wide_scale. Bits behind the last one (only where a reciprocal is tiny) are kept as a sticky bit.
 __int128 wide_product(double a, double b) {
     if (a == 0 || b == 0) return 0;
-    // 48 bits hold every word, its mantissa a whole number of them.
+    // Scales both mantissas to integers of 48 bits, which hold every word.
     const int ea = exponent_of(a) - 47;
     const int eb = exponent_of(b) - 47;
     const __int128 product = __int128(std::int64_t(scale_by(a, -ea))) * std::int64_t(scale_by(b, -eb));
@@ -72,7 +72,7 @@ Formats::Formats(int word, Rounding rounding, const ArrayExtent& extent) : word_
     const int offset_bits = 1 + bits_to(4 + extent.level);
     // Sums of three coordinates, each with a slope of at most 1, and a sign.
     const int scene_bits = 3 + bits_to(std::max({double(extent.width), double(extent.height), extent.depth}));
-    // A cube so deep that its integer part alone would fill the registers loses fraction bits there.
+    // A format has at most 48 bits: in a very deep cube, the integer part leaves fewer fraction bits.
     const auto beside = [&](int integer_bits) { return std::min(fraction, 48 - integer_bits); };
     unit = Format(2, fraction, rounding);
     depth = Format(depth_bits + 4, beside(depth_bits + 4), rounding);
@@ -84,7 +84,8 @@ Formats::Formats(int word, Rounding rounding, const ArrayExtent& extent) : word_
     field = Format(6, fraction + 2, rounding);
     accumulator = Format(4, std::min(2 * fraction, 40));
     intensity = Format(4, word - 4, rounding);
-    // The paper's widths up to its own word of 20 bits; beyond, they must not be what limits the picture.
+    // The paper's widths for words of up to the paper's 20 bits. For longer words these fields grow too, so
+    // that they don't limit the picture.
     const int more = std::max(word - 20, 0);
     feature = Format(3, std::min(word, 12) + more - 2);
     ior = Format(3, std::min(word, 16) + more - 2);
@@ -112,9 +113,10 @@ double Arithmetic::wide(const Format& f, double c, double a1, double b1, double 
                         double b3) const {
     const double about = c + a1 * b1 + a2 * b2 + a3 * b3;
     const double size = std::abs(c) + std::abs(a1 * b1) + std::abs(a2 * b2) + std::abs(a3 * b3);
-    // Far beyond every format: it saturates, whatever its last bits.
+    // Far beyond every format: the sum saturates, whatever its last bits are.
     if (size > 0x1p44) return f.hold(about);
-    // Seven roundings of at most 2^-53 each. Where the word is the same at both ends, it is the sum's.
+    // Seven roundings of at most 2^-53 each. If both ends of the error bound give the same word, it is the
+    // word of the exact sum.
     const double bound = size * 0x1p-50;
     const double word = f.hold(about - bound);
     if (word == f.hold(about + bound)) return word;

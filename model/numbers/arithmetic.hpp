@@ -1,5 +1,5 @@
 // The cell's arithmetic, exact (double precision) or fixed (words), chosen at run time. Walk, hit tests and
-// shading are written once, over this: every value that a register, a voxel or a message keeps goes through a
+// shading are written once, for both: every value that a register, a voxel or a message keeps is rounded to a
 // format. In exact arithmetic a format changes nothing.
 #pragma once
 
@@ -18,7 +18,7 @@ namespace raycell {
 
 using glm::dvec3;
 
-/// What the formats depend on besides the word: how far numbers can reach in an array. Cell widths.
+/// Dimensions of an array, in cell widths. The formats depend on them and on the word length.
 struct ArrayExtent {
     int width = 1;
     int height = 1;
@@ -26,19 +26,19 @@ struct ArrayExtent {
     double level = 1;
 };
 
-/// The formats of one machine; docs/reference/numbers.md is their table. F = word_bits - 2. They size messages and
-/// voxels in exact arithmetic too.
+/// The formats of one machine; docs/reference/numbers.md has their table. F = word_bits - 2. They determine
+/// the bits of messages and voxels in exact arithmetic too.
 struct Formats {
     int word_bits = 20;
     int depth_bits = 0;  ///< integer bits of a depth within the cube
     Format unit;         ///< Q2.F: place in a cell, directions, slopes, cosines, shares of intensity
-    Format depth;        ///< F fraction bits, integer part to the cube's depth: z, and what a plane is off by
-    Format distance;     ///< F fraction bits, integer part to the cube's diagonal: way in a cell, a register
-    Format reach;        ///< word_bits: distance to a source; its end counts as infinite
+    Format depth;        ///< F fraction bits, integer part to the cube's depth: z, offset from a plane
+    Format distance;     ///< F fraction bits, integer part to the cube's diagonal: t in a cell (register)
+    Format reach;        ///< word_bits: distance to a source; the largest value counts as infinite
     Format offset;       ///< word_bits: a plane's offset, relative to the cell and to its voxel's run
     Format edge_offset;  ///< F fraction bits: an edge's offset, over the run
     Format normal;       ///< word_bits, Q4: normal field
-    Format field;        ///< Q6.(F + 2): accumulator read out before normalising
+    Format field;        ///< Q6.(F + 2): vectors before they are normalised, read from the accumulator
     Format accumulator;  ///< Q4.2F, 44 bits at most: a dot product of words before it is rounded
     Format intensity;    ///< word_bits, Q4: intensities, saturating at 8
     Format feature;      ///< unsigned Q2, 12 bits, longer in words of over 20: colours, Kd, Ks, T
@@ -55,7 +55,7 @@ struct Formats {
     int place_bits() const { return 3 * (word_bits + 12) + exponent_bits; }
     static constexpr int exponent_bits = 6;
     static constexpr int shine_exponent_bits = 5;  ///< from 2^-8; 0 is none
-    int shine_bits = 12;  ///< a float: exponent and the fraction's bits, 7 or more in words of over 20
+    int shine_bits = 12;  ///< a float: 5 exponent bits and 7 fraction bits, more in words of over 20
 
     /// The formats by name, as "Q2.18"; unsigned ones as "UQ2.10".
     std::vector<std::pair<std::string, std::string>> names() const;
@@ -94,7 +94,7 @@ class Arithmetic {
     double dot(const Format& f, const dvec3& a, const dvec3& b) const {
         return mac(f, 0.0, a.x, b.x, a.y, b.y, a.z, b.z);
     }
-    /// c + s·v, a component each.
+    /// c + s·v, per component.
     dvec3 along(const Format& f, const dvec3& c, double s, const dvec3& v) const {
         return {mac(f, c.x, s, v.x), mac(f, c.y, s, v.y), mac(f, c.z, s, v.z)};
     }
@@ -108,25 +108,30 @@ class Arithmetic {
     }
     /// v/|v|; v is not 0. Fixed: shifted until its largest component fills a word, then 1/sqrt.
     dvec3 normalise(const dvec3& v) const;
-    /// The same, and |v|, unrounded but for the operator.
+    /// The same; also gives |v|, rounded only by the operator.
     dvec3 normalise(const dvec3& v, double& length) const;
 
-    /// Distances below this are rounding, not geometry (cells): points so far outside an edge, or behind the
-    /// end of a cell, count as inside, so that neighbours leave no crack.
+    /// Tolerance of hit tests, in cells: a point this far outside an edge, or behind the end of a cell,
+    /// counts as inside, so that neighbours leave no crack.
     double hair() const { return hair_; }
-    /// Surfaces met at distances that differ by no more are met at the same: the lower polygon id counts.
+    /// Surfaces whose distances along a ray differ by no more than this (cells) tie: the lower polygon id
+    /// counts.
     double tie() const { return tie_; }
-    /// A ray that meets a neighbour of the polygon it leaves nearer than this met it at their shared edge.
+    /// A ray that leaves a polygon and meets a neighbour of it nearer than this (cells) met it at their
+    /// shared edge.
     double least_fresh_distance() const { return least_fresh_distance_; }
-    /// What a negative PictureSettings::normal_offset stands for, cells.
+    /// The offset that a negative PictureSettings::normal_offset stands for, in cells; Context uses 0 instead
+    /// where no offset is needed.
     double default_normal_offset() const { return default_normal_offset_; }
 
-    /// A distance to a source: infinite where the word saturates, since no way within the cube is so long.
+    /// Rounds a distance to a source. Returns infinity where the word saturates, since no way within the cube
+    /// is that long.
     double hold_reach(double distance) const;
-    /// A place that may lie far outside the array (source, viewer): word_bits + 12 bits each, one exponent.
+    /// Rounds a place that may lie far outside the array (source, viewer): word_bits + 12 bits per
+    /// coordinate, one exponent for all three.
     dvec3 hold_place(const dvec3& place) const;
 
-    /// Phong's power as the features carry it.
+    /// Rounds Phong's power to the float that the features carry.
     double hold_shine(double shine) const;
 
   private:

@@ -7,7 +7,7 @@ constexpr int type = 3;          ///< of a message
 constexpr int polygon_id = 20;   ///< about a million polygons
 constexpr int generation = 6;    ///< --max-depth up to 62
 constexpr int child = 6;         ///< which child or source of a slot: up to 64
-constexpr int age = 17;          ///< cycles, to the starvation bound and an epoch more
+constexpr int age = 17;          ///< cycles, up to the starvation bound plus an epoch
 constexpr int edge_count = 8;    ///< of a voxel's part: up to 255
 constexpr int voxel_index = 10;  ///< up to 1024 voxels in a cell
 

@@ -1,7 +1,8 @@
 // Words of a fixed length: the numbers of the cell (paper, section 4.1: a 20-bit ALU).
 //
-// A word is carried in a double that is an exact multiple of its last bit: words have at most 48 bits, so
-// nothing is lost, and exact and fixed arithmetic share their data structures. Formats are run-time values.
+// A word is stored in a double that is an exact multiple of the word's last bit. Words have at most 48 bits,
+// so nothing is lost, and exact and fixed arithmetic share their data structures. Formats are run-time
+// values.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,8 @@ class Format {
     Format() : Format(2, 18) {}
     Format(int integer_bits, int fraction_bits, Rounding rounding = Rounding::nearest);
 
-    /// The word nearest to a finite value, by the rounding mode, or the end of the range beyond it.
+    /// Rounds a finite value to a word by the rounding mode; a value out of range gives the nearer end of the
+    /// range.
     double hold(double value) const {
         const double inside = std::min(std::max(value, least_), most_);
         // At this magnitude a double's last bit is the word's: the addition itself rounds, ties to even.
@@ -27,7 +29,8 @@ class Format {
         if (rounding_ == Rounding::truncate && word > inside) word -= step_;
         return word;
     }
-    /// The same of value / 2^`scale` held exactly in 128 bits: for sums of products that no double can hold.
+    /// The same for value / 2^`scale`, held exactly in 128 bits: for sums of products that no double can
+    /// hold.
     double hold_wide(__int128 value, int scale) const;
 
     int bits() const { return integer_bits_ + fraction_bits_; }

@@ -1,5 +1,5 @@
-// FNV-1a: of schedules, pictures and saved arrays. Equal hashes stand for equal runs in pins and documents,
-// so it must not change.
+// FNV-1a hash of schedules, pictures and saved arrays. Tests and documents pin its values as a sign of equal
+// runs, so it must not change.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,14 @@ namespace raycell {
 
 class Fnv {
   public:
-    /// A hash that begins with other than the usual value: `start`, 0 for schedules of cells.
+    /// Starts the hash with `start` instead of the usual value; schedules of cells start with 0.
     explicit Fnv(std::uint64_t start = 0xcbf29ce484222325ULL) : value_(start) {}
     void add(std::uint64_t word) { value_ = (value_ ^ word) * 0x100000001b3ULL; }
     void add_bytes(const void* data, std::size_t size) {
         const auto* bytes = static_cast<const unsigned char*>(data);
         for (std::size_t i = 0; i < size; ++i) add(bytes[i]);
     }
-    /// Upper bits into lower ones, which multiplying never does.
+    /// Mixes upper bits into lower ones, which multiplication never does.
     void fold(unsigned bits) { value_ ^= value_ >> bits; }
     std::uint64_t value() const { return value_; }
 

@@ -16,10 +16,10 @@ constexpr int significand_bits = 52;      // of a double, without the leading 1
 constexpr int schlick_exponent_bits = 8;  // fraction bits of an exponent, where the method is coarse anyway
 constexpr int most_exponent_bits = 19;
 constexpr Word most_octaves = 32;  // between 1 and the least base that a logarithm can hold
-constexpr int top_exponent = 127;  // of a result
+constexpr int top_exponent = 127;  // largest exponent of a result
 
-/// |x| = significand / 2^52 * 2^exponent, significand from 2^52 on. A number less than normal counts as
-/// 2^-1023.
+/// |x| = significand / 2^52 * 2^exponent, significand from 2^52 on. A subnormal number, or 0, gets exponent
+/// -1023.
 struct Split {
     Word significand;
     int exponent;
@@ -32,14 +32,15 @@ Split split(double x) {
     return {(bits & (leading - 1)) | leading, int(bits >> significand_bits & 0x7ff) - 1023};
 }
 
-/// The word of F fraction bits nearest to 1/m, or below it; there are no ties.
+/// 1/m as a word of F fraction bits: the nearest one, or the one below. There are no ties.
 Word exact_reciprocal(Word m, int fraction_bits, bool nearest) {
     return ((Word(1) << (2 * fraction_bits)) + (nearest ? m / 2 : 0)) / m;
 }
 
-/// The same of 1/sqrt(m) for m with F - 1 fraction bits.
+/// The same for 1/sqrt(m), where m has F - 1 fraction bits.
 Word exact_root(Word m, int fraction_bits, bool nearest) {
-    // Twice the root is the largest h of h^2 * m <= 4 * 2^(3F - 1). Double precision starts next to it.
+    // Twice the root is the largest h with h^2 * m <= 4 * 2^(3F - 1). The search starts next to it, at the
+    // double-precision value.
     using Wide = unsigned __int128;
     const Wide limit = Wide(1) << (3 * fraction_bits + 1);
     Word h = Word(scale_by(1, fraction_bits + 1) / std::sqrt(double(m) * scale_by(1, 1 - fraction_bits)));
@@ -87,8 +88,8 @@ TableSizes table_sizes(const OperatorSettings& settings, int word_bits) {
     const auto size = [](int asked, int first, int steps) {
         return asked != 0 ? asked : first << std::max(steps, 0);
     };
-    // A Newton step doubles the bits of a table: 14 of 64 lines for 1/x, 12 for 1/sqrt, and two more of twice
-    // as many.
+    // A Newton step doubles the bits of a table. 64 lines give 14 bits for 1/x and 12 for 1/sqrt; twice as
+    // many lines give two more bits.
     return {size(settings.reciprocal_table, 64, (word_bits - 25) / 4),
             size(settings.root_table, 64, (word_bits - 21) / 4),
             size(settings.power_table, 32, (word_bits - 19) / 2)};
@@ -125,13 +126,13 @@ Operators::Operators(const OperatorSettings& settings, int word_bits, Rounding r
     });
 }
 
-/// What stands for a result beyond 2^top_exponent.
+/// The value returned for a result beyond 2^top_exponent, with the sign of x.
 double Operators::signed_limit(double x) const {
     const double limit = scale_by(2 - scale_by(1, -fraction_bits_), top_exponent);
     return x < 0 ? -limit : limit;
 }
 
-/// value / 2^drop by the rounding mode; 0 for a drop that leaves nothing.
+/// value / 2^drop, rounded by the rounding mode; 0 if no bit is left.
 inline Word Operators::round_off(Word value, int drop) const {
     if (drop <= 0) return value;
     if (drop > 63) return 0;
@@ -140,7 +141,7 @@ inline Word Operators::round_off(Word value, int drop) const {
     return (value + (Word(1) << (drop - 1)) - 1 + even) >> drop;
 }
 
-/// The lines' word at `argument`, whose leading bits select the line.
+/// Interpolates the table at `argument`, whose leading bits select the line.
 inline Word Operators::line_value(const Table& table, Word argument) const {
     const Table::Line& line = table.lines[argument >> table.rest_bits];
     const Word rest = argument & ((Word(1) << table.rest_bits) - 1);
@@ -162,8 +163,8 @@ inline Word Operators::root_mantissa(Word m) const {
     const int octave = int(m >> f);
     const Word r = line_value(roots_[octave], m - (Word(1) << (f - 1 + octave)));
     if (settings_.root == Iteration::table) return r;
-    // m * r first: it keeps all bits of a word where r * r would lose up to two.
-    // Next to 4 it rounds to 2, beyond the word's end; the end gives the same result.
+    // m * r comes first: it keeps all bits of a word, where r * r would lose up to two. Next to m = 4 the
+    // root rounds to 2, just beyond the largest word; the largest word gives the same result.
     const Word root = round_off(m * r, f - 1);
     const Word correction = round_off((Word(3) << (2 * f)) - root * r, f + 1);
     return round_off(r * correction, f);
@@ -196,13 +197,14 @@ double Operators::inverse_root(double x) const {
     return scale_by(double(root_mantissa(m)), -f - half_exponent);
 }
 
-/// 2^(exponent * log2 of the base) for base = m * 2^exponent < 1.
+/// 2^(power * log2(base)), for base = m * 2^exponent < 1.
 inline Word Operators::tables_power(Word m, int exponent, Word power) const {
     const int f = fraction_bits_;
     const Word logarithm = line_value(logarithms_, m - (Word(1) << f));
     const Word octaves = std::min((Word(-exponent) << f) - logarithm, most_octaves << f);
-    // The result is 2^-product; its whole part is a shift, and what is missing to a whole one is 2^fraction.
-    // 64 octaves and more leave nothing of a word; of long words the product would not fit into 64 bits.
+    // The result is 2^-product: a shift by the product rounded up to a whole number, times 2^(what rounding
+    // up added). A product of 64 octaves or more leaves no bit of a word, and in long words it would not fit
+    // into 64 bits.
     if ((unsigned __int128)octaves * power >> (f + exponent_bits_ + 6)) return 0;
     const Word product = round_off(octaves * power, exponent_bits_);
     const Word one = Word(1) << f;
@@ -216,7 +218,8 @@ inline Word Operators::schlick_power(Word base, Word power) const {
     const int f = fraction_bits_;
     const Word one = Word(1) << f;
     const Word divisor = power * (one - base) + (base << schlick_exponent_bits);
-    // Up to 59 bits, beyond what a double holds; 1/256 at least, so it has no fewer bits than a mantissa.
+    // The divisor has up to 59 bits, more than a double holds. It is at least 1/256, so it has no fewer bits
+    // than a mantissa.
     const int top = 63 - __builtin_clzll(divisor);
     Word m = round_off(divisor, top - f);
     int exponent = top - (f + schlick_exponent_bits);
@@ -224,7 +227,7 @@ inline Word Operators::schlick_power(Word base, Word power) const {
         m >>= 1;
         ++exponent;
     }
-    // Exponents below 1 with a coarse reciprocal could pass 1.
+    // With an exponent below 1 and a coarse reciprocal, the result could exceed 1.
     return std::min(round_off(base * reciprocal_mantissa(m), f + 1 + exponent), one / 2);
 }
 

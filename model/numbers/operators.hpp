@@ -1,5 +1,5 @@
-// The cell's operators for what its ALU has no instruction for (paper, section 4.1: approximations of square
-// root, division and exponentiation): reciprocal, 1/sqrt and power, each by a method of choice.
+// Operators that the cell's ALU has no instruction for (paper, section 4.1: approximations of square root,
+// division and exponentiation): reciprocal, 1/sqrt and power, each with a choice of methods.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace raycell {
 
-/// Lines of the tables: those asked for, or what the word length needs. Power has two of its size.
+/// Lines of each table: as set, or else as many as the word length needs. Power has two tables of its size.
 struct TableSizes {
     int reciprocal;
     int root;
@@ -18,30 +18,32 @@ struct TableSizes {
 };
 TableSizes table_sizes(const OperatorSettings& settings, int word_bits);
 
-/// The operators of one word length W. Arguments and results are mantissas of W bits, unsigned, 1.(W - 1),
-/// with a sign and an exponent beside them: normalised by a leading-zero count, so their accuracy is relative
-/// and does not depend on magnitude. An argument is first rounded to such a mantissa by the rounding mode,
-/// which acts on magnitudes here: to truncate goes towards 0. Powers of two (reciprocal) and of four
-/// (inverse_root) give exact results. Whatever a register holds in between is a word of W bits too; products
-/// and their sums are exact until they are rounded to a word. Tables hold the nearest words in either mode,
-/// and a line between neighbours: results of `table` are continuous and monotone. Nothing throws, and every
-/// finite argument has a finite result; sense is the caller's.
+/// The operators of one word length W. Arguments and results are unsigned mantissas of W bits, 1.(W - 1),
+/// with separate sign and exponent. A leading-zero count normalises them, so accuracy is relative and does
+/// not depend on magnitude. An argument is first rounded to such a mantissa by the rounding mode, which acts
+/// on magnitudes here: truncation goes towards 0. Powers of two (reciprocal) and of four (inverse_root) give
+/// exact results.
+///
+/// All registers in between are words of W bits too; products and their sums are exact until they are rounded
+/// to a word. Tables hold the nearest words in either mode, with lines between neighbours: results of `table`
+/// are continuous and monotone. Nothing throws, and every finite argument has a finite result; the caller
+/// checks that an argument makes sense.
 class Operators {
   public:
     /// Builds the tables. Throws std::invalid_argument for a table size that is no power of two from 4 to
-    /// 4096 and for words other than of 8 to 32 bits.
+    /// 4096, and for a word length outside 8 to 32 bits.
     Operators(const OperatorSettings& settings, int word_bits, Rounding rounding);
 
-    /// 1/x, its mantissa in [0.5, 1]. For |x| < 2^-127, 0 too: the largest mantissa times 2^127, with the
-    /// sign of x; products with it are still finite.
+    /// 1/x, its mantissa in [0.5, 1]. For |x| < 2^-127, 0 included: the largest mantissa times 2^127, with
+    /// the sign of x; products with it are still finite.
     double reciprocal(double x) const;
-    /// 1/sqrt(x), of x normalised by an even exponent to 2.(W - 2) in [1, 4); its mantissa in [0.5, 1]. Half
-    /// of the table's lines lie over [1, 2), half over [2, 4): the exponent's last bit and the leading bits
-    /// behind the 1 select one. For x < 2^-254, 0 and less too: as the reciprocal of 0.
+    /// 1/sqrt(x), its mantissa in [0.5, 1]. An even exponent normalises x to 2.(W - 2) in [1, 4). Half of the
+    /// table's lines lie over [1, 2), half over [2, 4): the exponent's last bit and the leading bits behind
+    /// the 1 select a line. For x < 2^-254, 0 and negative x included: as the reciprocal of 0.
     double inverse_root(double x) const;
-    /// base^exponent as a word Q2.(W - 2), 0 to 1. The base is from 0 to 1, beyond counts as the nearer end;
-    /// so does the exponent beyond 0 to 2^19, which is held with W - 12 fraction bits, 8 at least (`schlick`:
-    /// 8). 0^0 = 1, as in Phong's term with Shine 0. Least base that `tables` tells from smaller ones: 2^-32.
+    /// base^exponent as a word Q2.(W - 2), 0 to 1. The base is clamped to 0 to 1 and the exponent to 0 to
+    /// 2^19. The exponent has W - 12 fraction bits, at least 8 (`schlick`: 8). 0^0 = 1, as in Phong's term
+    /// with Shine 0. `tables` can't distinguish bases below 2^-32.
     double power(double base, double exponent) const;
 
     const OperatorSettings& settings() const { return settings_; }

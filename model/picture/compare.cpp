@@ -9,8 +9,8 @@ namespace raycell {
 
 namespace {
 
-constexpr double largest_psnr = 200;  ///< dB; stands for infinity, which JSON has no word for
-constexpr double rounding = 1e-6;     ///< a step of an 8-bit picture is "off by 1/255", not more
+constexpr double largest_psnr = 200;  ///< dB; replaces infinity, which JSON can't express
+constexpr double rounding = 1e-6;     ///< tolerance: an error of one 8-bit step is not "more than 1/255"
 
 bool has_nan(const Pixel& pixel) {
     return std::isnan(pixel.depth) || glm::any(glm::isnan(pixel.colour)) ||

@@ -1,4 +1,4 @@
-// How far one picture is from another.
+// Measures how far one picture is from another.
 #pragma once
 
 #include "model/picture/picture.hpp"
@@ -16,11 +16,11 @@ struct Accuracy {
 };
 
 /// Compares two pictures of one size. Throws std::invalid_argument if the sizes differ or are 0,
-/// std::domain_error naming the first pixel with a number that is not one (NaN).
+/// std::domain_error naming the first pixel that holds NaN.
 Accuracy compare(const Picture& test, const Picture& truth);
 
-/// Picture of the absolute differences of the clamped colours, times `gain` (>= 0) so that small ones are
-/// seen. Only colours are filled. Throws as compare does.
+/// Picture of the absolute differences of the clamped colours, times `gain` (>= 0) to make small ones
+/// visible. Only colours are filled. Throws as compare does.
 Picture difference(const Picture& test, const Picture& truth, double gain = 8);
 
 }  // namespace raycell

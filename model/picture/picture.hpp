@@ -1,4 +1,4 @@
-// The picture and what is known of each pixel.
+// The picture, and what is known about each pixel.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct Pixel {
     std::uint32_t polygon = no_polygon;  ///< of the first hit
     std::uint32_t cycle = 0;             ///< trace cycle in which the pixel was complete (timed only)
     std::uint32_t postponed = 0;  ///< times that a ray of its tree was destroyed and sent again (timed only)
-    std::uint32_t hops = 0;       ///< cell-to-cell hops of all rays and returns of the pixel's tree
+    std::uint32_t hops = 0;       ///< cell-to-cell hops of all rays and answers of the pixel's tree
 };
 
 /// Row-major, row 0 on top.

@@ -1,4 +1,4 @@
-// Cycles per operation of every unit: the one place where time comes from (design, section 6).
+// Cycles per operation of every unit: the only source of times (design, section 6).
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace raycell {
 enum class Iteration { newton, table, rounded };      ///< how reciprocal and 1/sqrt are computed
 enum class PowerMethod { tables, schlick, rounded };  ///< how base^exponent is computed
 
-/// How the cell computes what its ALU has no instruction for. `newton`: one step from a table with linear
-/// interpolation; `table`: the table alone; `rounded`: the nearest word, digit by digit. Power: `tables` of
-/// log2 and exp2 with linear interpolation; `schlick`: b / (n - n*b + b) (Schlick 1994).
+/// How the cell computes operations that its ALU has no instruction for. `newton`: one step from a table with
+/// linear interpolation; `table`: the table alone; `rounded`: the nearest word, digit by digit. Power:
+/// `tables` of log2 and exp2 with linear interpolation; `schlick`: b / (n - n*b + b) (Schlick 1994).
 struct OperatorSettings {
     Iteration reciprocal = Iteration::newton;
     Iteration root = Iteration::newton;
     PowerMethod power = PowerMethod::tables;
-    /// Entries, powers of two from 4 to 4096; 0: what the word length needs (table_sizes), at 20 bits 64,
+    /// Entries, a power of two from 4 to 4096; 0: what the word length needs (table_sizes), at 20 bits 64,
     /// 64, 32.
     int reciprocal_table = 0;
     int root_table = 0;
@@ -29,9 +29,10 @@ struct OperatorSettings {
 struct CostTable {
     // Traversal unit: the incremental walk (Amanatides & Woo 1987) and the comparisons with voxels.
     std::uint32_t walk_step = 4;         ///< next crossing, position on it, cube test
-    std::uint32_t compare_depth = 1;     ///< a voxel's run with the ray's, rung `depth`
+    std::uint32_t compare_depth = 1;     ///< compares a voxel's run with the ray's, rung `depth`
     std::uint32_t compare_interval = 2;  ///< the same, the other rungs
-    // Per voxel whose run meets the ray's; each plus a reciprocal, at rungs `depth` and `interval` it alone.
+    // Per voxel whose run meets the ray's. A reciprocal is added to each; rungs `depth` and `interval` cost
+    // the reciprocal alone.
     std::uint32_t compare_plane = 4;  ///< two dot products
     std::uint32_t compare_mask = 5;
     std::uint32_t compare_edge = 4;  ///< plus per_edge for every edge that crosses the cell
@@ -47,7 +48,7 @@ struct CostTable {
     // Operators, by method (--reciprocal, --root, --power).
     std::uint32_t reciprocal_newton = 4;    ///< look-up, interpolation, two multiplications
     std::uint32_t reciprocal_table = 2;     ///< look-up and interpolation
-    std::uint32_t reciprocal_rounded = 20;  ///< a digit each
+    std::uint32_t reciprocal_rounded = 20;  ///< one digit per cycle
     std::uint32_t root_newton = 5;
     std::uint32_t root_table = 2;
     std::uint32_t root_rounded = 20;
@@ -65,7 +66,7 @@ struct CostTable {
     std::uint32_t distribution_span = 8;  ///< a row cuts its span from a trapeze
     std::uint32_t distribution_pass = 1;
 
-    /// Cycles of an operator by its method.
+    /// Cycles of an operator, by its method.
     std::uint32_t reciprocal(const OperatorSettings& operators) const;
     std::uint32_t root(const OperatorSettings& operators) const;
     std::uint32_t power(const OperatorSettings& operators) const;

@@ -1,4 +1,4 @@
-// The typed, defaulted configuration of one run; every module gets its own part by const reference.
+// The typed configuration of one run, with defaults; every module gets its own part by const reference.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ enum class Networks { shared, split, quadrant, half };
 enum class Recovery { none, postpone };
 enum class Slots { reserved, free, nested };  ///< which rays find a slot (cells/deadlock/deadlock.md)
 enum class Numbers { fixed, exact };          ///< words of fixed length, or double precision
-/// What becomes of the bits behind the last one: to the nearest, ties to even (SystemC's SC_RND_CONV), or cut
-/// off (SC_TRN, towards minus infinity).
+/// How a value is rounded to a word: to the nearest, ties to even (SystemC's SC_RND_CONV), or truncated
+/// towards minus infinity (SC_TRN).
 enum class Rounding { nearest, truncate };
 enum class Engine { timed, untimed };
 enum class RunStage { load, trace };
@@ -34,7 +34,7 @@ struct CellRange {
     bool contains(int x, int y) const { return x >= x0 && x <= x1 && y >= y0 && y <= y1; }
 };
 
-/// The cell's arithmetic. The operators' methods count for their cycles in exact arithmetic too.
+/// The cell's arithmetic. The methods of the operators decide their cycles in exact arithmetic too.
 struct NumberSettings {
     Numbers arithmetic = Numbers::fixed;
     int word_bits = 20;  ///< of messages, voxels and the ALU, 8..32
@@ -42,7 +42,7 @@ struct NumberSettings {
     OperatorSettings operators;
 };
 
-/// What the picture depends on: scene placement, voxels, ray tree. Both engines use all of it.
+/// Settings that the picture depends on: scene placement, voxels, ray tree. Both engines use all of them.
 struct PictureSettings {
     int width = 128;          ///< cells, 1..4096
     int height = 128;         ///< cells, 1..4096
@@ -56,14 +56,15 @@ struct PictureSettings {
     ExteriorMode exterior = ExteriorMode::host;
     int max_depth = 4;              ///< generations after the primary ray, 0..62
     double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut
-    /// Cells, along the polygon's normal, to the side the new ray goes; negative: what suits the arithmetic.
+    /// Offset of a new ray's origin along the polygon's normal, to the side that the ray goes to, in cells;
+    /// negative: as the arithmetic needs it.
     double normal_offset = -1;
     double chord_error = 0.1;  ///< cells, largest gap between a curved object and its polygons
     int voxel_capacity = 0;    ///< voxels a cell can hold; 0: unlimited
     NumberSettings numbers;
 };
 
-/// What only time depends on: invariant 2 says that none of it changes the picture.
+/// Settings that only time depends on: by invariant 2 none of them changes the picture.
 struct MachineSettings {
     int ray_store = 8;     ///< M, slots per cell, >= 1
     int buffer_depth = 1;  ///< messages per buffer, >= 1
@@ -76,7 +77,8 @@ struct MachineSettings {
     int exterior_processors = 64;  ///< >= 1
     int exterior_latency = 200;    ///< cycles per ray handed to an exterior processor, >= 1
     std::uint64_t seed = 1;        ///< of the back-off's jitter and of random stalls
-    /// Probability that a transfer over a link, or an operation of a unit, takes one cycle more; and again.
+    /// Probability that a transfer over a link, or an operation of a unit, takes one more cycle; tried again
+    /// after each.
     double stall = 0;
     CostTable costs;
 };

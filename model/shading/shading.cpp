@@ -5,13 +5,13 @@ namespace raycell {
 ShadePoint shade_point(const dvec3& position, const dvec3& direction, const dvec3& raw_normal,
                        const dvec3& plane_normal, const Arithmetic& arithmetic) {
     const Formats& formats = arithmetic.formats();
-    // In words, a normal of a few last bits has no direction worth the name.
+    // In words, a normal of only a few last bits has no usable direction.
     const double step = formats.normal.step();
     const double least = arithmetic.exact() ? 1e-12 : 64 * step * step;
     const bool vanishes = !(arithmetic.dot(formats.accumulator, raw_normal, raw_normal) > least);
     const dvec3 normal = !vanishes            ? arithmetic.normalise(raw_normal)
                          : arithmetic.exact() ? plane_normal
-                                              : arithmetic.normalise(plane_normal);  // words keep slopes
+                                              : arithmetic.normalise(plane_normal);  // not unit in words
     ShadePoint point;
     point.position = position;
     point.direction = direction;

@@ -1,5 +1,5 @@
 // Whitted's model with Phong's highlight, the same for the machine, the exterior and the truth (design,
-// section 7). Without an arithmetic of its own a caller computes exactly.
+// section 7). A caller that passes no arithmetic computes exactly.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace raycell {
 
-/// A surface point as shading sees it.
+/// A surface point, as shading needs it.
 struct ShadePoint {
     dvec3 position{0, 0, 0};   ///< cell coordinates
     dvec3 direction{0, 0, 1};  ///< of the arriving ray, unit
@@ -43,18 +43,17 @@ bool refract_direction(const ShadePoint& point, double ior, dvec3& out,
 inline double mirror_share(const Material& m) { return m.mirror ? m.specular : 0.0; }
 inline double transmit_share(const Material& m) { return m.transmit; }
 
-/// Where the share T of a ray goes on: the refracted direction, or on total internal reflection the mirrored
-/// one.
+/// Direction of the ray that carries the share T on: refracted, or mirrored on total internal reflection.
 dvec3 transmit_direction(const ShadePoint& point, double ior,
                          const Arithmetic& arithmetic = exact_arithmetic());
 
-/// The local part: ambient 0.1·Kd·C, and I·(Kd·C·(N·L) + Ks·(R·L)^Shine) for each source whose bit in `lit`
-/// is set.
+/// Local part of the intensity: ambient 0.1·Kd·C, and I·(Kd·C·(N·L) + Ks·(R·L)^Shine) for each source whose
+/// bit in `lit` is set.
 dvec3 local_intensity(const ShadePoint& point, const Material& material, const Source* sources,
                       std::size_t source_count, std::uint64_t lit,
                       const Arithmetic& arithmetic = exact_arithmetic());
 
-/// local + Ks·reflected + T·refracted, in this order (bit-identity hangs on the order).
+/// local + Ks·reflected + T·refracted, in this order (bit-identity depends on the order).
 dvec3 combine_intensity(const dvec3& local, const Material& material, const dvec3& reflected,
                         const dvec3& refracted, const Arithmetic& arithmetic = exact_arithmetic());
 

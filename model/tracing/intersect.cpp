@@ -6,7 +6,7 @@
 namespace raycell {
 namespace {
 
-/// Where the ray enters the depths [near, far], or nothing if it doesn't between 0 and t_end.
+/// Distance at which the ray enters the depths [near, far]; nothing if it does not between 0 and t_end.
 std::optional<double> enter_run(const Ray& ray, double t_end, double near, double far,
                                 const Arithmetic& arithmetic) {
     const double z0 = ray.position.z;
@@ -43,7 +43,7 @@ bool inside_pieces(const CellStore& store, const Voxel& voxel, const dvec3& poin
     return false;
 }
 
-/// `room`: what the point may be off by, cells.
+/// `room`: tolerance of the point, in cells.
 bool inside_mask(const Voxel& voxel, const dvec3& point, double room, const Arithmetic& arithmetic) {
     const Format& word = arithmetic.formats().field;
     dvec3 scaled = point;
@@ -62,7 +62,7 @@ bool inside_mask(const Voxel& voxel, const dvec3& point, double room, const Arit
     for (int axis = 0; axis < 2; ++axis) {
         const double per_window = arithmetic.reciprocal(size[axis]);
         const double place = arithmetic.product(word, uv[axis] - low[axis], per_window);
-        // The neighbour's mask must not leave a crack.
+        // Tolerance, so that neighbouring masks leave no crack.
         const double rounding = arithmetic.exact() ? 1e-6 : room_uv[axis] * per_window;
         if (place < -rounding || place > 1 + rounding) return false;
         bit[axis] = std::clamp(int(place * 8), 0, 7);
@@ -74,21 +74,21 @@ bool inside_mask(const Voxel& voxel, const dvec3& point, double room, const Arit
 struct Meeting {
     double t;
     double along;  ///< plane normal · direction
-    double room;   ///< what t may be off by
+    double room;   ///< tolerance of t
 };
 std::optional<Meeting> meet_plane(const Voxel& voxel, const Ray& ray, const Arithmetic& arithmetic) {
     const Formats& formats = arithmetic.formats();
     const dvec3& n = voxel.plane.n;
     const dvec3& p = ray.position;
     const dvec3& d = ray.direction;
-    // The accumulator itself: the reciprocal normalises it.
+    // Unrounded, from the accumulator: the reciprocal normalises it.
     const double along = arithmetic.dot(formats.accumulator, n, d);
     if (std::abs(along) < 1e-12) return std::nullopt;  // in the plane: it meets the polygon's neighbours
     const double off =
         arithmetic.mac(formats.depth, voxel.plane.c, -n.x, p.x, -n.y, p.y, -n.z, p.z - voxel.base);
     const double inverse = arithmetic.reciprocal(along);
-    // A word's error in `off` grows in t as the ray grazes: a fixed room would let it through at a cell's
-    // border.
+    // A word's error in `off` grows in t for grazing rays: with a fixed tolerance, they could slip through at
+    // a cell's border.
     constexpr double most_growth = 1024;
     const double growth = arithmetic.exact() ? 1 : std::clamp(std::abs(inverse), 1.0, most_growth);
     return Meeting{arithmetic.product(formats.distance, off, inverse), along, arithmetic.hair() * growth};
@@ -99,7 +99,7 @@ std::optional<Meeting> meet_plane(const Voxel& voxel, const Ray& ray, const Arit
 std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, const Ray& ray, double t_end,
                                 HitTest test, double level, const Arithmetic& arithmetic) {
     if (test == HitTest::depth) {
-        // Levels, not depths, are compared: a run touched from outside at its border is another level.
+        // Compares levels, not depths: a run that the ray only touches at its border is another level.
         const auto t = enter_run(ray, t_end, voxel.near, voxel.far, arithmetic);
         if (!t) return t;
         const double z1 = depth_at(ray, t_end, arithmetic);
@@ -113,12 +113,13 @@ std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, cons
     const auto meeting = meet_plane(voxel, ray, arithmetic);
     if (!meeting) return std::nullopt;
     const double t = meeting->t;
-    // Only a ray that leaves a surface has neighbours of it to pass by.
+    // Only a ray that leaves a surface has to skip that surface's neighbours.
     const bool leaves = ray.fresh && ray.leaves != no_polygon;
     const double t_least = leaves ? arithmetic.least_fresh_distance() : -meeting->room;
     if (!(t >= t_least && t <= t_end + meeting->room)) return std::nullopt;
-    // Without edges a polygon's plane runs on over its neighbours. A ray that leaves one side of a surface
-    // first meets that same side of its next part: in its first cell, the other side is such an overrun.
+    // Without edges a polygon's plane continues over its neighbours. In its first cell, a ray that leaves one
+    // side of a surface first meets the same side of the next part; a hit on the other side is such an
+    // overrun.
     const bool overruns = test == HitTest::plane || test == HitTest::mask;
     if (overruns && leaves && ray.leaves_front == (meeting->along > 0)) {
         return std::nullopt;
@@ -132,8 +133,8 @@ std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, cons
 
 namespace {
 
-/// Which of two hits counts. Voxels come in the order of their polygons, so one comparison with what is kept
-/// is enough: a later one must be nearer by more than a tie.
+/// Whether a hit replaces the kept one. Voxels come in the order of their polygons, so one comparison is
+/// enough: a later hit must be nearer by more than a tie.
 bool precedes(double t, std::uint32_t polygon, double kept_t, std::uint32_t kept_polygon, double tie) {
     return polygon < kept_polygon ? t <= kept_t + tie : t < kept_t - tie;
 }

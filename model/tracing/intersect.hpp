@@ -8,8 +8,9 @@
 
 namespace raycell {
 
-/// Distance along the ray at which it hits the voxel within the cell, if it does before t_end.
-/// A fresh ray may not hit behind its origin; others may by a hair, so that no hit falls between two cells.
+/// Distance along the ray at which it hits the voxel within the cell, if it does before t_end. A fresh ray
+/// that leaves a polygon may not hit behind its origin. Other rays may, within the tolerance, so that no hit
+/// falls between two cells.
 std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, const Ray& ray, double t_end,
                                 HitTest test, double level, const Arithmetic& arithmetic);
 
@@ -19,16 +20,16 @@ struct CellHit {
     bool tied = false;  ///< another was met at the same distance
 };
 
-/// How much a cell compared: what the traversal unit's time is made of.
+/// Comparisons made in a cell; they determine the traversal unit's cycles.
 struct Comparisons {
     std::uint32_t runs = 0;   ///< voxels whose depth run was compared with the ray's
     std::uint32_t tests = 0;  ///< of these, voxels that the rung's own test was made on
     std::uint32_t edges = 0;  ///< edge functions of these (rung `edge`)
 };
 
-/// The nearest hit in a cell; within Arithmetic::tie() the lowest polygon id. For shadow rays any hit will
-/// do, but the nearest is found all the same: the cell has one comparison unit for both. The store is only
-/// looked at where the ray's own run meets one of `runs`.
+/// The nearest hit in a cell; within Arithmetic::tie(), the one with the lowest polygon id. Any hit would do
+/// for a shadow ray, but the cell has one comparison unit for all rays. The store is read only where the
+/// ray's own run meets one of `runs`.
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
                                        double level, const Arithmetic& arithmetic,
                                        Comparisons* comparisons = nullptr, const DepthRuns& runs = {});

@@ -6,7 +6,7 @@ namespace raycell {
 
 void set_direction(Ray& ray, const dvec3& direction, const Arithmetic& arithmetic) {
     ray.direction = direction;
-    // A reciprocal too large to be a number belongs to a ray that never crosses.
+    // A ray with so small a component never crosses, and the reciprocal would be too large.
     const auto inverse = [&](double d) { return std::abs(d) < 1e-12 ? 0.0 : arithmetic.reciprocal(d); };
     ray.inverse_x = inverse(direction.x);
     ray.inverse_y = inverse(direction.y);
@@ -46,7 +46,8 @@ void move_along(Ray& ray, double t, const Arithmetic& arithmetic) {
 }
 
 void cross(Ray& ray, const Crossing& crossing, const Arithmetic& arithmetic) {
-    // An axial ray crosses nothing: it is only carried to the border, and keeps its place in its own column.
+    // An axial ray crosses nothing: it is only passed on to the border, and keeps its place in its own
+    // column.
     if (ray.inverse_x == 0 && ray.inverse_y == 0) return;
     move_along(ray, crossing.t, arithmetic);
     switch (crossing.side) {

@@ -36,7 +36,7 @@ struct Ray {
     dvec3 direction{0, 0, 1};
     double inverse_x = 0;  ///< 1/direction.x, carried so that a hop needs no division; 0 if direction.x = 0
     double inverse_y = 0;
-    double weight = 1;  ///< share of the pixel that its intensity can still have
+    double weight = 1;  ///< largest share of the pixel that its intensity can contribute
     double reach = std::numeric_limits<double>::infinity();  ///< distance left to the source (shadow rays)
     std::uint64_t id = 0;
     std::uint32_t leaves = no_polygon;  ///< polygon that it starts from and can't hit
@@ -75,8 +75,7 @@ inline double depth_at(const Ray& ray, double t, const Arithmetic& arithmetic) {
     return arithmetic.mac(arithmetic.formats().depth, ray.position.z, t, ray.direction.z);
 }
 
-/// The side that a ray which left through the front or the back takes next: straight on, an axial one goes
-/// east.
+/// The next crossing of a ray that left through the front or the back: straight on; an axial ray goes east.
 Crossing border_crossing(const Ray& ray, const Arithmetic& arithmetic);
 
 }  // namespace raycell

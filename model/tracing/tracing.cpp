@@ -12,7 +12,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// 32-bit finaliser of MurmurHash3: ids that depend on the tree alone, not on when a ray was sent.
+/// 32-bit finaliser of MurmurHash3. Ids depend on the tree alone, not on when a ray was sent.
 std::uint32_t mix(std::uint32_t h) {
     h ^= h >> 16;
     h *= 0x85ebca6bU;
@@ -25,8 +25,8 @@ std::uint64_t child_id(std::uint64_t parent, unsigned child) {
     return (parent & ~std::uint64_t(0xffffffffU)) | mix(std::uint32_t(parent) * 31 + child + 1);
 }
 
-/// Starts a ray off a polygon: a small way along its normal, to the side that the ray goes to. (In words the
-/// normal is not unit but 1 along the polygon's dominant axis; the way is up to 1.7 times the offset.)
+/// Starts a ray at a small offset along the polygon's normal, to the side that the ray goes to. In words the
+/// normal is not unit but 1 along the polygon's dominant axis, so the distance is up to 1.7 times the offset.
 void leave_surface(Ray& ray, const Context& context, const dvec3& local, const Voxel& voxel) {
     const Arithmetic& arithmetic = context.arithmetic;
     const Formats& formats = arithmetic.formats();
@@ -104,7 +104,7 @@ Context::Context(const CellScene& placed, const PictureSettings& picture_setting
     background = arithmetic.hold(f.intensity, placed.background);
     eye = arithmetic.hold_place(placed.frame.eye);
     depth = arithmetic.hold(f.depth, placed.frame.depth);
-    // Exact distances to a polygon and its edges need no help; runs and masks do.
+    // Exact arithmetic with polygon edges needs no offset; runs and masks do.
     const bool none = arithmetic.exact() && settings.hit == HitTest::edge;
     const double suitable = none ? 0 : arithmetic.default_normal_offset();
     normal_offset = arithmetic.hold(f.unit, settings.normal_offset < 0 ? suitable : settings.normal_offset);
@@ -121,12 +121,12 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
     visit.crossing = next_crossing(ray, arithmetic);
     const double dz = ray.direction.z;
     double t_end = visit.crossing.t;
-    // The division is only for rays that leave.
+    // Only a ray that leaves the cube needs the division.
     const double z_end = dz == 0 ? ray.position.z : depth_at(ray, t_end, arithmetic);
     const double bound = dz > 0 ? context.depth : 0;
     if (dz > 0 ? z_end > bound : z_end < bound) {
-        // A ray may start a hair outside, from a polygon on the cube's face: it leaves at once, not in the
-        // past.
+        // A ray from a polygon on the cube's face may start slightly outside: it leaves at once, not at a
+        // negative distance.
         const double t_leave = std::max(arithmetic.product(arithmetic.formats().distance,
                                                            bound - ray.position.z, arithmetic.reciprocal(dz)),
                                         0.0);
@@ -140,7 +140,7 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
     }
     const auto hit = nearest_in_cell(store, ray, t_end, context.settings.hit, context.scene.frame.level(),
                                      arithmetic, &visit.comparisons, runs);
-    // What lies on the source itself does not hide it.
+    // A surface at the source itself does not hide it.
     if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach - arithmetic.hair())) {
         visit.event = Visit::Event::hit;
         visit.hit = *hit;
@@ -151,7 +151,7 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
 std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs) {
     const Comparisons& made = visit.comparisons;
     const HitTest test = settings.hit;
-    // Every test ends in a division: where on its way the ray meets the plane, or enters the run.
+    // Every test ends in a division, for the distance at which the ray meets the plane or enters the run.
     const std::uint32_t own = test == HitTest::plane  ? costs.compare_plane
                               : test == HitTest::mask ? costs.compare_mask
                               : test == HitTest::edge ? costs.compare_edge
@@ -179,13 +179,13 @@ ExteriorRequest request_at_border(const Context& context, const Ray& ray, const 
     request.direction = context.arithmetic.exact() ? ray.direction : glm::normalize(ray.direction);
     const bool axial = ray.inverse_x == 0 && ray.inverse_y == 0;
     if (axial && ray.outside) {
-        // It was only carried to the border: its place is still that of the cell that sent it.
+        // It was only passed on to the border: its place is still relative to the cell that sent it.
         request.origin = {ray.home_x + ray.position.x, ray.home_y + ray.position.y, ray.position.z};
         request.reach = ray.reach;
         return request;
     }
     double t = crossing.t;
-    if (ray.outside) {  // back along the way that it came untested
+    if (ray.outside) {  // back to where it left the cube: it came from there untested
         const double face = ray.direction.z > 0 ? context.depth : 0;
         t = (face - ray.position.z) * (1 / ray.direction.z);
     }

@@ -9,8 +9,8 @@ namespace raycell {
 
 class SyntheticTraffic;
 
-/// What every cell knows once the scene is loaded: objects' features, sources, background and viewer as the
-/// machine's arithmetic holds them. `scene` keeps them as they are, for the exterior.
+/// What every cell knows once the scene is loaded: features, sources, background and viewer, in the machine's
+/// arithmetic. `scene` keeps the original values, for the exterior.
 struct Context {
     const CellScene& scene;
     const PictureSettings& settings;
@@ -21,18 +21,18 @@ struct Context {
     dvec3 eye{0, 0, 0};
     double depth = 1;                           ///< of the cube, cell widths
     double normal_offset = 0;                   ///< cells
-    const SyntheticTraffic* traffic = nullptr;  ///< set: what rays meet is drawn, not loaded (traffic.hpp)
+    const SyntheticTraffic* traffic = nullptr;  ///< set: hits are drawn, not found in the scene (traffic.hpp)
 
-    /// All must outlive it. Throws std::invalid_argument for numbers that Arithmetic refuses, and for
-    /// settings that synthetic traffic has nothing for: see traffic_picture().
+    /// All arguments must outlive the context. Throws std::invalid_argument for number settings that
+    /// Arithmetic rejects, and for settings that synthetic traffic does not support: see traffic_picture().
     Context(const CellScene& placed, const PictureSettings& picture_settings,
             const SyntheticTraffic* synthetic = nullptr);
 };
 
-/// Features as the cells latch them.
+/// Rounds features to words, as the cells latch them.
 Material hold(const Material& material, const Arithmetic& arithmetic);
 
-/// What becomes of a ray in a cell.
+/// The outcome of a ray's test in a cell.
 struct Visit {
     enum class Event : std::uint8_t {
         hit,            ///< meets a voxel
@@ -41,7 +41,7 @@ struct Visit {
         reaches_source  ///< a shadow ray that nothing blocked
     };
     Crossing crossing;
-    CellHit hit;  ///< leaves_cube: its distance is that to the front or the back
+    CellHit hit;  ///< leaves_cube: its t is the distance to the front or the back
     Comparisons comparisons;
     Event event = Event::forward;
 };
@@ -70,8 +70,8 @@ struct ExteriorRequest {
     dvec3 direction{0, 0, 1};
     double reach = 0;
 };
-/// `ray` stands on the border of cell (x, y), before crossing it. In fixed arithmetic the exterior, which is
-/// exact, makes the direction unit again and takes the distance to a source from the source.
+/// `ray` is about to cross the array's border from cell (x, y). In fixed arithmetic the direction is made
+/// unit again, and the distance to a source is computed from the source, because the exterior is exact.
 ExteriorRequest exterior_request(const Context& context, const Ray& ray, const Crossing& crossing, int x,
                                  int y);
 /// An intensity from the exterior, as a message carries it.
@@ -99,10 +99,10 @@ struct HitSetup {
 HitSetup set_up_hit(const Context& context, const CellStore& store, const Ray& ray, const CellHit& hit, int x,
                     int y);
 
-/// Whether a hit of this ray may have to wait for answers: only then does it need a slot of the ray store.
+/// Whether a hit of this ray may have to wait for answers; only then it needs a slot of the ray store.
 bool may_wait(const Context& context, const Ray& ray, std::uint32_t object);
 
-/// Generations that may have to wait: the number of slots that `reserved` keeps apart.
+/// Number of generations that may have to wait: `reserved` keeps one slot for each.
 int waiting_generations(const Context& context);
 
 /// Pixel (x, y)'s primary ray.
@@ -129,13 +129,14 @@ dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t obj
 std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs);
 std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, const CostTable& costs);
 
-/// The picture after loading: the cell's nearest voxel at its centre along z, no shadows (--stage load).
+/// A cell's pixel after loading (--stage load): its nearest voxel at the cell's centre along z, without
+/// shadows.
 Pixel display_cell(const Context& context, const CellStore& store, int x, int y);
 
-/// First-hit data of a pixel, from the primary ray's hit.
+/// Records first-hit data in a pixel, from the primary ray's hit.
 void record_first_hit(Pixel& pixel, const HitSetup& setup, std::uint32_t polygon);
 
-/// A pixel that sees the background.
+/// Records that a pixel sees the background.
 void record_background(Pixel& pixel);
 
 }  // namespace raycell

@@ -7,7 +7,7 @@
 namespace raycell {
 namespace {
 
-constexpr double child_share = 0.5;  ///< of a child's intensity in its parent's
+constexpr double child_share = 0.5;  ///< share of a child's intensity in its parent's
 
 /// Finaliser of SplitMix64 (Steele, Lea & Flood 2014).
 std::uint64_t mix(std::uint64_t h) {
@@ -54,7 +54,8 @@ dvec3 SyntheticTraffic::direction(std::uint64_t ray, std::uint32_t cell) const {
         const double part = std::sqrt(0.5);
         return {which & 1 ? -part : part, which & 2 ? -part : part, 0};
     }
-    // A point of the disc, found by rejection: only operations that are rounded the same way everywhere.
+    // Draws a point of the disc by rejection: this needs only operations that are rounded the same way
+    // everywhere.
     for (std::uint32_t count = 1;; count += 2) {
         const double x = 2 * draw(Draw::direction, ray, cell, count) - 1;
         const double y = 2 * draw(Draw::direction, ray, cell, count + 1) - 1;
@@ -70,7 +71,7 @@ Visit SyntheticTraffic::visit_cell(const CellStore& store, const Ray& ray, const
     visit.crossing = next_crossing(ray, context.arithmetic);
     if (ray.fresh) return visit;
     const std::uint32_t cell = cell_index(store);
-    // What turns back passes everything on its way: it retraces that of its parent.
+    // A ray that turns back hits nothing on its way: it retraces its parent's path.
     const bool hits = ray.leaves != no_polygon ? ray.leaves == cell
                                                : draw(Draw::hit, ray.id, cell) < settings_.hit_probability;
     visit.comparisons.runs = 1;
@@ -89,7 +90,8 @@ HitSetup SyntheticTraffic::set_up_hit(const Context& context, const CellStore& s
     setup.local = point_at(ray, hit.t, context.arithmetic);
     setup.point.position = setup.local + dvec3(x, y, 0);
     setup.point.direction = ray.direction;
-    // The surface's own intensity stands where a scene has its normal: recorded with the pixel's first hit.
+    // The surface's own intensity takes the place of the normal, so that it is recorded with the pixel's
+    // first hit.
     for (int channel = 0; channel < 3; ++channel) {
         setup.point.normal[channel] = draw(Draw::intensity, ray.id, cell, std::uint32_t(channel));
     }

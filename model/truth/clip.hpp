@@ -5,9 +5,9 @@
 
 namespace raycell {
 
-/// The scene with every polygon's outline clipped to the cube; ids, planes and normal fields are kept, so a
-/// point that remains shades as before. Polygons of which nothing remains are dropped. For the truth against
-/// which nothing counts as error that is lost outside the cube (design, section 7).
+/// The scene with every polygon's outline clipped to the cube. Ids, planes and normal fields are kept, so a
+/// point that remains shades as before. Polygons with nothing left are dropped. Against the truth of this
+/// scene, what is lost outside the cube does not count as error (design, section 7).
 CellScene clip_scene(const CellScene& scene);
 
 }  // namespace raycell

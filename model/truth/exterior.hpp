@@ -1,5 +1,5 @@
-// The exterior processors' work: the truth renderer's code from where a ray left the cube (paper,
-// section 3.3).
+// The exterior processors' work: traces a ray on from where it left the cube, with the truth renderer's code
+// (paper, section 3.3).
 #pragma once
 
 #include "model/tracing/tracing.hpp"

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A polygon's outline on the array, cut to it.
+/// Bounds of a polygon's outline; its sides are cut to the array.
 struct Outline {
     double left = infinite, right = -infinite, top = infinite, bottom = -infinite;
     double near = infinite, far = -infinite;
@@ -33,7 +33,7 @@ struct Outline {
     bool inside_ = false;
 };
 
-/// Columns that its spans cross from the left border, summed over its rows.
+/// Columns that a polygon's spans cross from the left border, summed over its rows.
 double columns_passed(const Polygon& polygon, const Outline& outline, const Frame& frame) {
     const int first = outline.first_row();
     const int rows = outline.last_row(frame) - first + 1;
@@ -59,7 +59,7 @@ double columns_passed(const Polygon& polygon, const Outline& outline, const Fram
     return sum;
 }
 
-/// Cells that a polygon touches, about: that of a convex outline laid at random on a grid.
+/// Approximate number of cells that a polygon touches: that of a convex outline placed at random on a grid.
 double touched_cells(const Polygon& polygon, const Outline& outline) {
     const double width = outline.right - outline.left;
     const double height = outline.bottom - outline.top;
@@ -70,8 +70,8 @@ double touched_cells(const Polygon& polygon, const Outline& outline) {
     return std::min(std::abs(doubled) / 2, width * height) + width + height + 1;
 }
 
-/// Loading: spans travel from the left border to their last cell; what is broadcast crosses all cells.
-/// A vertex between two others cuts its row's span in two.
+/// Adds the loading: spans travel from the left border to their last cell; broadcast messages cross all
+/// cells. Every vertex between the top and the bottom one cuts its row's span in two.
 void forecast_loading(const CellScene& scene, Forecast& sum) {
     const Frame& frame = scene.frame;
     double broadcasts = 2;  // viewer and sources, end of scene
@@ -98,13 +98,13 @@ class Sampler {
 
     double hops = 0;
 
-    /// False once more rays have been followed than a forecast may.
+    /// False once the ray limit of a forecast is reached.
     bool may_go_on() const { return rays_ < most_rays; }
     void primary(int x, int y) {
         const Frame::PrimaryRay ray = scene_.frame.primary_ray(x + 0.5, y + 0.5);
         follow({ray.origin, ray.direction, no_polygon}, 0, 1);
     }
-    /// From a point of a polygon to a source; what goes through in silence sends no answer.
+    /// Follows a precast ray from a point of a polygon to a source; an unblocked one sends no answer.
     void precast(const dvec3& point, const Polygon& polygon, const Source& source) {
         const dvec3 way = source.position - point;
         const double distance = glm::length(way);
@@ -145,7 +145,7 @@ class Sampler {
     std::uint64_t rays_ = 0;
 };
 
-/// Distance to where a ray leaves the cube, and the face.
+/// Distance at which a ray leaves the cube; sets the face.
 double Sampler::leaves_cube(const Start& ray, Face& face) const {
     const dvec3 far = scene_.frame.cube().high;
     double leave = infinite;
@@ -232,12 +232,13 @@ void Sampler::shade(const TruthHit& hit, const dvec3& direction, int generation,
     }
 }
 
-/// Every ray of an even sample of pixels, spread so that any part of it is even, too.
+/// Forecasts hops from all rays of an even sample of pixels. The beginning of the sample is spread evenly
+/// too, since the ray limit may end it early.
 double forecast_trace(const CellScene& scene, const PictureSettings& settings, const TruthRenderer& truth,
                       int samples) {
     const Frame& frame = scene.frame;
     const double cells = double(frame.width) * frame.height;
-    // Points of a sequence of low discrepancy in the plane: multiples of two powers of the plastic number.
+    // A low-discrepancy sequence in the plane: multiples of two powers of the plastic number.
     constexpr double alpha_x = 0.7548776662466927;
     constexpr double alpha_y = 0.5698402909980532;
     Sampler sampler(scene, settings, truth);
@@ -252,10 +253,11 @@ double forecast_trace(const CellScene& scene, const PictureSettings& settings, c
     return sampler.hops * cells / taken;
 }
 
-/// A ray from every voxel to every source: from the middles of polygons, drawn evenly by their voxels.
+/// Forecasts hops of a ray from every voxel to every source. Samples polygons evenly by their voxels, and
+/// takes a point of each.
 double forecast_precast(const CellScene& scene, const PictureSettings& settings, const TruthRenderer& truth,
                         int samples) {
-    std::vector<double> voxels;  ///< up to and with each polygon
+    std::vector<double> voxels;  ///< running total, with each polygon
     double sum = 0;
     for (const Polygon& polygon : scene.polygons) {
         const Outline outline(polygon, scene.frame);
@@ -269,7 +271,7 @@ double forecast_precast(const CellScene& scene, const PictureSettings& settings,
         const double wanted = sum * (taken + 0.5) / samples;
         const auto found = std::upper_bound(voxels.begin(), voxels.end(), wanted);
         const Polygon& polygon = scene.polygons[std::size_t(found - voxels.begin())];
-        // Anywhere in it: between its middle and one of its vertices.
+        // A point in the polygon: between its middle and one of its vertices.
         dvec3 middle{0, 0, 0};
         for (const dvec3& vertex : polygon.vertices) middle += vertex / double(polygon.vertices.size());
         const dvec3& vertex = polygon.vertices[std::size_t(taken) % polygon.vertices.size()];

@@ -1,5 +1,5 @@
-// What a run will take, foretold from the scene: messages of the loading from the outlines of its polygons,
-// rays from a sample of pixels that are traced classically. For estimates of time before a run.
+// Forecasts the work of a run, to estimate its time beforehand: load messages from the outlines of the
+// polygons, rays from a sample of pixels that are traced classically.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace raycell {
 
-/// Expected counts, within a factor of two of the timed engine's in most scenes. Postponed rays are not
-/// foretold: where M is scarce a run makes more hops.
+/// Expected counts, within a factor of two of the timed engine's in most scenes. Rays sent again are not
+/// included: where M is small, a run makes more hops.
 struct Forecast {
     double load_hops = 0;     ///< of load messages between cells
     double load_steps = 0;    ///< of trapezes down the chain of distributors
@@ -22,10 +22,9 @@ struct Forecast {
     double hops() const { return load_hops + precast_hops + trace_hops; }
 };
 
-/// Foretells a run over this scene. `truth` must have been made of it; null, or --stage load: nothing is
-/// traced. `samples` pixels, and as many voxels for precast, are looked at; their rays are limited, too, so
-/// that the forecast takes a fraction of a second even where trees are very large (what it says is too
-/// little then).
+/// Forecasts a run over this scene. `truth` must have been made from it; if null, or with --stage load,
+/// nothing is traced. Looks at `samples` pixels, and at as many voxels for precast. The number of rays is
+/// limited too, so that the forecast takes a fraction of a second; where trees are very large it is too low.
 Forecast forecast(const CellScene& scene, const PictureSettings& settings, const TruthRenderer* truth,
                   int samples = 1024);
 

@@ -17,15 +17,15 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double coordinate_limit = 1e15;  ///< Embree ignores boxes beyond 1.8e18
 
-/// So many of the polygons that reach farthest may stand apart from Embree's tree.
+/// At most this many polygons, of those that reach farthest, may stand apart from Embree's tree.
 constexpr std::size_t most_apart = 16;
 
-/// The query that rides behind Embree's own context; Embree hands its address back to the callbacks.
+/// A query, stored behind Embree's own context; Embree hands the context's address back to the callbacks.
 struct Query {
     RTCIntersectContext context;  // first, so that a pointer to it is a pointer to the query
     const ProbeRay& ray;
     std::uint32_t exclude;
-    double t_max;      ///< nothing beyond is of interest: the caller's limit, or the nearest hit and a tie
+    double t_max;      ///< hits beyond it don't count: the caller's limit, or the nearest hit plus a tie
     double start = 0;  ///< Embree's ray begins at ray.at(start)
     struct Hit {
         double t;
@@ -40,7 +40,7 @@ struct Query {
     }
     static Query& of(RTCIntersectContext* context) { return *reinterpret_cast<Query*>(context); }
 
-    /// Takes the polygon if it is met and nothing well before it; true if taken.
+    /// Records the polygon if the ray meets it, and no other by more than a tie before it; true if recorded.
     bool offer(const std::vector<Polygon>& polygons, std::size_t candidate) {
         const Polygon& polygon = polygons[candidate];
         if (polygon.id == exclude) return false;
@@ -53,7 +53,7 @@ struct Query {
         return true;
     }
 
-    /// Of what is met at the same distance as the nearest, the lowest id.
+    /// Of the hits within a tie of the nearest, the one with the lowest id.
     std::optional<PolygonIndex::Nearest> chosen(const std::vector<Polygon>& polygons) const {
         std::optional<PolygonIndex::Nearest> best;
         for (const Hit& hit : hits) {
@@ -172,11 +172,11 @@ void PolygonIndex::Tree::on_occluded(const RTCOccludedFunctionNArguments* args) 
     if (!args->valid[0]) return;
     const Tree& tree = of(args->geometryUserPtr);
     if (!Query::of(args->context).offer(tree.polygons, tree.members[args->primID])) return;
-    // Embree's sign for "stop, something is in the way".
+    // Tells Embree to stop: something is in the way.
     reinterpret_cast<RTCRay*>(args->ray)->tfar = -std::numeric_limits<float>::infinity();
 }
 
-/// Sets a few polygons apart that reach much farther than all others, as a floor to the horizon does: in the
+/// Keeps a few polygons apart that reach much farther than all others, such as a floor to the horizon. In the
 /// tree they would cost every other polygon its precision, and the padding would make the tree useless.
 void PolygonIndex::Tree::divide() {
     std::vector<std::pair<double, std::size_t>> by_reach;
@@ -193,12 +193,13 @@ void PolygonIndex::Tree::divide() {
         const bool far = i < most && by_reach[i].first > 8 * others;
         (far ? apart : members).push_back(by_reach[i].second);
     }
-    std::sort(members.begin(), members.end());  // the order of the scene, which is one of neighbours
+    std::sort(members.begin(), members.end());  // the order of the scene: neighbours lie close together
 }
 
-/// The padding covers, with a factor of 3 to spare, what single precision moves a point of the ray by: half a
-/// unit in the last place of the origin, and of the direction over the diagonal (both bounded by the box of
-/// the members, because a ray is handed to Embree only from where it enters that box).
+/// Computes the members' box and the padding. The padding covers, with a factor of 3 to spare, the distance
+/// by which single precision moves a point of the ray: half a unit in the last place of the origin, and of
+/// the direction over the diagonal. The members' box bounds both, because Embree gets a ray only from where
+/// it enters that box.
 void PolygonIndex::Tree::measure() {
     for (const std::size_t member : members) {
         const Box box = bounds_of(polygons[member]);
@@ -232,8 +233,8 @@ void PolygonIndex::Tree::build() {
         fail(error, "can't build its tree over " + std::to_string(members.size()) + " polygons");
 }
 
-/// Sets up Embree's ray from where the query's enters the tree, a pad earlier, so that rounding can't put the
-/// first polygon behind it. False: the ray passes the tree.
+/// Sets up Embree's ray one pad before the query's ray enters the tree, so that rounding can't put the first
+/// polygon behind its origin. False if the ray misses the tree.
 bool PolygonIndex::Tree::begin(RTCRay& ray, Query& query) const {
     if (!scene) return false;
     const Interval inside = clip_ray(query.ray, bounds, query.t_max);

@@ -19,7 +19,7 @@ ProbeRay::ProbeRay(const dvec3& origin, const dvec3& direction)
       across_(projection(along_)),
       shear_(direction[across_.u] / direction[along_], direction[across_.v] / direction[along_]) {}
 
-/// Where the ray sees a point: (0, 0) if the point is on the ray's line.
+/// Place of a point as seen along the ray; (0, 0) if the point is on the ray's line.
 dvec2 ProbeRay::flatten(const dvec3& point) const {
     const dvec3 p = point - origin_;
     return {p[across_.u] - shear_.x * p[along_], p[across_.v] - shear_.y * p[along_]};
@@ -41,7 +41,7 @@ bool ProbeRay::pierces(const std::vector<dvec3>& outline) const {
     return odd;
 }
 
-/// Whether the point at distance t lies within a hair of the polygon's outline.
+/// Whether the point at distance t lies within the tolerance of the polygon's outline.
 bool ProbeRay::touches(const Polygon& polygon, double t) const {
     const double room = outline_room(polygon);
     const dvec2 p = project(at(t), polygon.drop);

@@ -9,18 +9,19 @@
 
 namespace raycell {
 
-/// A ray that passes the polygon's outline by no more than this, in its projection, meets it.
+/// Tolerance in cells: a ray that passes the polygon's outline by no more than this, in the polygon's
+/// projection, meets it.
 inline double outline_room(const Polygon& polygon) { return exact_hair + 2 * polygon.slack; }
 
 /// A ray prepared for the test against many polygons, in double precision.
 ///
-/// A point of a polygon is found by its crossing number (even-odd rule, so concave outlines need no special
-/// care), counted not on the polygon's plane but on the plane that the ray sees: the vertices are sheared
-/// along the ray, as Woop, Benthin and Wald do for triangles (Watertight Ray/Triangle Intersection, 2013).
-/// An edge's crossing then depends on the ray and the edge's two ends alone, bit for bit, not on the polygon
-/// that asks: where polygons share an edge or a vertex, an odd number of those round the ray hold it, so no
-/// ray slips between them. A ray that passes an outline by no more than exact_hair meets it too, so that
-/// where edges lie on rays the choice is not left to rounding.
+/// Whether the ray meets a polygon is found by counting crossings of the outline (even-odd rule, so concave
+/// outlines need no special care). They are counted not on the polygon's plane but on the plane that the ray
+/// sees: the vertices are sheared along the ray, as Woop, Benthin and Wald do for triangles (Watertight
+/// Ray/Triangle Intersection, 2013). The crossing of an edge then depends, bit for bit, only on the ray and
+/// the edge's two ends, not on the polygon. Where polygons share an edge or a vertex, an odd number of those
+/// around the ray contain it, so no ray slips between them. A ray that passes an outline by no more than
+/// outline_room() meets the polygon too, so that rounding does not decide where edges lie on rays.
 class ProbeRay {
   public:
     /// Cell coordinates; `direction` is unit (an error of a few 1e-5, as fixed-point words have, does no

@@ -38,7 +38,7 @@ void for_each_row(int rows, int threads, const std::function<void(int, int)>& pr
         try {
             helpers.emplace_back(run);
         } catch (const std::exception&) {
-            break;  // no more threads to be had, or no memory for them: those that there are do the work
+            break;  // no more threads, or no memory for them: the existing ones do the work
         }
     }
     run();

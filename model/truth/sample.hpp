@@ -1,4 +1,4 @@
-// How far a picture is from the truth, by a sample of its pixels: for every run, at little cost.
+// Measures how far a picture is from the truth, on a sample of its pixels: cheap enough for every run.
 #pragma once
 
 #include "model/picture/picture.hpp"
@@ -12,7 +12,7 @@ struct SampledAccuracy {
 };
 
 /// Compares `most` pixels of a finished picture, or all if it has fewer, with the truth. Takes as long as
-/// that many pixels of `truth`.
+/// rendering that many pixels of `truth`.
 SampledAccuracy sample_accuracy(const Picture& picture, const Frame& frame, const TruthRenderer& truth,
                                 int most);
 

@@ -16,7 +16,7 @@ TruthCounts& operator+=(TruthCounts& sum, const TruthCounts& more) {
     return sum;
 }
 
-/// One tree of rays: what all its rays share.
+/// What all rays of a tree share.
 struct TruthRenderer::Tracer {
     const TruthRenderer& truth;
     TruthSettings limits;

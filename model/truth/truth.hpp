@@ -15,12 +15,12 @@
 
 namespace raycell {
 
-/// Where a tree of rays ends.
+/// Limits of a tree of rays.
 struct TruthSettings {
     int max_depth = 4;              ///< generations after the primary ray, >= 0
     double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut
-    /// SPD's rules 8 and 9: what transmits always sends one reflected ray, whatever its Ks, and on total
-    /// internal reflection no other.
+    /// SPD's rules 8 and 9: a transmitting surface always sends one reflected ray, whatever its Ks, and on
+    /// total internal reflection no other.
     bool transmitters_reflect = false;
 };
 
@@ -35,9 +35,9 @@ struct TruthHit {
 struct TruthCounts {
     std::uint64_t eye = 0;        ///< primary rays
     std::uint64_t eye_hits = 0;   ///< of them, those that hit anything
-    std::uint64_t reflected = 0;  ///< those of total internal reflection, too
+    std::uint64_t reflected = 0;  ///< including those of total internal reflection
     std::uint64_t refracted = 0;
-    std::uint64_t shadow = 0;  ///< to sources that the normal faces; to others none is sent
+    std::uint64_t shadow = 0;  ///< to sources that the normal faces; none is sent to others
 };
 TruthCounts& operator+=(TruthCounts& sum, const TruthCounts& more);
 
@@ -62,12 +62,12 @@ class TruthRenderer {
     std::optional<TruthHit> intersect(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
                                       double t_max = std::numeric_limits<double>::infinity()) const;
 
-    /// Whether any polygon, transparent or not, lies between the origin and t_max. Both ends are kept clear
-    /// by nearest_hit: a polygon through the source itself does not darken it.
+    /// Whether any polygon, transparent or not, lies between the origin and t_max. Polygons within
+    /// nearest_hit of either end don't count: a polygon through the source itself does not darken it.
     bool occluded(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, double t_max) const;
 
-    /// Intensity that a ray brings back. `generation` is 0 for a primary ray, `weight` the product of the
-    /// shares on the way to it. Adds the rays that it sends, not itself, to `counts` if given.
+    /// Intensity that a ray brings back. `generation` is 0 for a primary ray; `weight` is the product of the
+    /// shares on the way to it. If `counts` is given, adds the rays that this ray causes, not the ray itself.
     dvec3 radiance(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, int generation,
                    double weight, TruthCounts* counts = nullptr) const;
 
