@@ -45,7 +45,7 @@ class CellCheck {
     void number(const char* what, double value) const {
         if (!std::isfinite(value)) fail(std::string(what) + " is not finite", "a number");
         if (picture_.numbers.arithmetic == Numbers::exact) return;
-        // A word of any format has at most 48 bits, and at most 40 of them are fraction bits.
+        // A word that a cell stores has at most 48 bits, and at most 40 of them are fraction bits.
         const double units = value * 0x1p40;
         if (std::abs(value) > 0x1p48 || units != std::floor(units))
             fail(std::string(what) + " is no word", "fixed-point words");

@@ -72,7 +72,7 @@ struct Primitive {
 
 struct Scene {
     std::string name;                    ///< for messages: the file's name
-    std::vector<std::string> libraries;  ///< files of materials that were read, too
+    std::vector<std::string> libraries;  ///< material files that were read as well
     dvec3 background{0, 0, 0};
     std::optional<View> view;
     std::vector<LightSource> sources;

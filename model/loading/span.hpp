@@ -15,7 +15,7 @@ namespace raycell {
 struct Span {
     std::uint32_t polygon = 0;
     std::uint32_t object = 0;
-    int x = 0;     ///< current cell, which all is relative to: X1 at first
+    int x = 0;     ///< current cell, which all functions are relative to: X1 at first
     int last = 0;  ///< Xr, the last cell that it touches
     Plane plane;
     int drop = 2;

@@ -17,7 +17,7 @@ struct SlotBits {
     int total() const { return control + ray + hit + children + sources + out; }
 };
 
-/// Bits of one slot, for so many sources.
+/// Bits of one slot, for this number of sources.
 SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machine, const Formats& formats,
                    std::size_t sources);
 

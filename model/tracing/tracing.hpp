@@ -36,7 +36,7 @@ Material hold(const Material& material, const Arithmetic& arithmetic);
 struct Visit {
     enum class Event : std::uint8_t {
         hit,            ///< meets a voxel
-        forward,        ///< goes on over `crossing`, perhaps over the array's border
+        forward,        ///< continues over `crossing`, perhaps over the array's border
         leaves_cube,    ///< leaves through the front or the back while in this cell
         reaches_source  ///< a shadow ray that nothing blocked
     };
