@@ -9,21 +9,21 @@ namespace raycell {
 
 class SplitLinks;
 
-/// Rows of cells next to each other, `end` not included.
+/// Adjacent rows of cells, `first` to `end` - 1.
 struct Band {
     int first = 0;
     int end = 0;
-    SplitLinks* above = nullptr;  ///< with whoever has row first - 1; null: that is the array's border
-    SplitLinks* below = nullptr;  ///< with whoever has row `end`
+    SplitLinks* above = nullptr;  ///< links to the owner of row `first` - 1; null at the array's border
+    SplitLinks* below = nullptr;  ///< links to the owner of row `end`; null at the array's border
 };
 
-/// The part of an array that this process simulates. The other rows are other ranks', and the links to them
-/// are halves.
+/// The part of an array that this process simulates. Other ranks simulate the other rows; the links to them
+/// are half links.
 class ArrayShare {
   public:
-    /// All of an array of so many rows.
+    /// A whole array of `height` rows.
     explicit ArrayShare(int height) : ArrayShare(height, {{0, height, nullptr, nullptr}}) {}
-    /// Of an array of so many rows these bands, from the top down.
+    /// These bands, from the top down, of an array of `height` rows.
     ArrayShare(int height, std::vector<Band> bands) : bands_(std::move(bands)) {
         places_.assign(std::size_t(height), -1);
         for (const Band& band : bands_) {
@@ -35,7 +35,7 @@ class ArrayShare {
     }
 
     const std::vector<Band>& bands() const { return bands_; }
-    /// The one that begins at row y; null if there is none.
+    /// The band that begins at row y; null if there is none.
     const Band* band_at(int y) const {
         for (const Band& band : bands_) {
             if (band.first == y) return &band;
@@ -44,9 +44,9 @@ class ArrayShare {
     }
     /// All its rows, from the top down.
     const std::vector<int>& rows() const { return rows_; }
-    /// Any y, also one beyond the array.
+    /// Whether row y is simulated here; y may lie beyond the array.
     bool contains(int y) const { return y >= 0 && std::size_t(y) < places_.size() && place(y) >= 0; }
-    /// Where in rows() row y is.
+    /// The index of row y in rows(); -1 if it is another rank's.
     int place(int y) const { return places_[std::size_t(y)]; }
 
   private:

@@ -39,12 +39,12 @@ Cycle Cell::step(Cycle now) {
         return wakeup_.next;
     }
     if (room_made_) unpark(now);
-    // Most steps have few of these to do; what there is nothing for is not called.
+    // Most steps have little to do: each part is called only when it has work.
     if (traversal_.packet()) finish_traversal(now);
     if (!shading_.idle()) finish_shading(now);
     answers_moved_ = 0;
     if (aging_.due(now)) move_overdue(now);
-    // Replies of this cell and answers that pass through take turns when both want to go.
+    // Replies of this cell and incoming answers take turns when both want to go.
     if (replies_first_) {
         if (has_replies()) move_replies(now);
         if (answers_to_move()) move_answers(now);
@@ -91,7 +91,7 @@ void Cell::remove_from(std::size_t place) {
         pending_ &= ~inputs_.pop_ray(place, now, more);
         if (!more) return;
         want(now + 1);
-        // An answer that stood behind the ray may have waited for longer than anybody has.
+        // An answer that stood behind the ray may have waited longer than any other message.
         if (env_.classes.count == 1) aging_.new_head(now);
         return;
     }
@@ -122,8 +122,8 @@ void Cell::start_traversal(Cycle now) {
     const std::size_t slots = slot_places();
     std::uint32_t inputs = occupied() & ~decided_;
     if (inputs == 0 && slots == 0) return;
-    // Places of slots come last, so the round is: inputs from next() on, slots, inputs before it. How
-    // many they are is another line of memory.
+    // Places of slots come last, so the round is: inputs from next() on, slots, inputs before next(). The
+    // number of slots is read last, because it lies in another cache line.
     const std::size_t first_slot = first_slot_place();
     const std::size_t next = traversal_.next();
     const std::size_t start = next < first_slot || next < place_count() ? next : 0;
@@ -249,9 +249,9 @@ void Cell::move_answer(std::size_t from, Cycle now) {
 }
 
 void Cell::move_rays(Cycle now) {
-    // Oldest first: a round robin over places, or one per output, lets a ray wait for ever for an output that
-    // others keep using (found as a livelock in spite of reserved slots).
-    std::vector<WaitingRay>& waiting = env_.waiting;  // of the second and later ones: mostly there is one
+    // Oldest first. With a round robin over places, or one per output, a ray can wait for ever for an output
+    // that others keep using (seen as a livelock in spite of reserved slots).
+    std::vector<WaitingRay>& waiting = env_.waiting;  // the second and later rays: mostly there is only one
     waiting.clear();
     WaitingRay first{0, 0, nullptr};
     const auto look = [&](std::size_t place) {
@@ -280,11 +280,11 @@ void Cell::move_rays(Cycle now) {
     for (const WaitingRay& ray : waiting) try_ray(*ray.packet, ray.place, now);
 }
 
-/// Moves a ray if it can; what it waited for is told apart by cause.
+/// Moves a ray if it can, and counts its wait by cause.
 void Cell::try_ray(RayPacket& packet, std::size_t place, Cycle now) {
     const std::uint64_t id = packet.ray.id;
     Wait wait = packet.wait;
-    packet.wait.cause = Stall::none;  // once it has moved it belongs to others
+    packet.wait.cause = Stall::none;  // set before the move: a ray that has moved belongs to others
     if (move_ray(packet, place, now)) {
         settle(wait, id, now);
     } else {
@@ -331,7 +331,7 @@ bool Cell::forward(RayPacket& packet, std::size_t place, Cycle now) {
     return true;
 }
 
-/// The ray ends in an answer; false if that can't leave yet.
+/// The ray ends in an answer; false if the answer can't leave yet.
 bool Cell::respond(RayPacket& packet, std::size_t place, Cycle now) {
     if (!send_answer(response_of(packet, env_.context), now)) return false;
     remove_from(place);

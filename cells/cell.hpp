@@ -1,4 +1,4 @@
-// A cell's behaviour: no process of its own, its host calls step() in every cycle in which something may have
+// A cell's behaviour. It has no process: its host calls step() in every cycle in which something may have
 // changed.
 #pragma once
 
@@ -24,32 +24,34 @@ namespace raycell {
 
 /// One cell (paper, section 4): four input and four output links, a traversal unit, a shading unit, a ray
 /// store. Each unit does one thing at a time; costs come from the cost table. A ray stays in its input buffer
-/// while it is tested and until what it needs next is free: the output buffer, a slot, or the way for its
-/// answer.
+/// during its test and until the resource that it needs next is free: an output buffer, a slot, or the way
+/// for its answer.
 class alignas(64) Cell final : public Client {
   public:
     Cell(Environment& environment, int x, int y);
 
-    // Before the simulation starts. A side that is never connected is the array's border.
+    // To be called before the simulation starts. A side that is never connected is the array's border.
     void set_host(CellHost& host) { host_ = &host; }
     void connect_in(Side side, Link& in) { inputs_.connect(side, in); }
     void connect_out(Side side, Link& out) { router_.connect(side, out); }
-    /// The way in of load messages; else the west link.
+    /// Sets the link on which load messages come in; the default is the west link.
     void connect_load(Link& load) { load_in_ = &load; }
-    /// All links are connected.
+    /// To be called once all links are connected.
     void elaborate();
 
-    /// Woken: the host is to call step().
+    /// The scheduler wakes the cell: asks the host to call step().
     void activate() override { host_->activate(*this); }
     void foreseen() const override { host_->foresee(*this); }
 
     /// Begins the environment's phase in the next cycle.
     void begin_phase();
 
-    /// One cycle. Returns the next cycle in which the cell wants to run of itself, `never` if none.
+    /// Runs one cycle. Returns the next cycle in which the cell must run without being woken; `never` if
+    /// there is none.
     Cycle step(Cycle now);
 
-    /// The depths of the store's voxels, which must not change any more: kept by the caller.
+    /// Sets the depth runs of the store's voxels, one per voxel; the voxels must not change any more. `runs`
+    /// must outlive the cell.
     void set_runs(const DepthRun* runs) { runs_ = {runs, std::uint32_t(store_.voxels.size())}; }
 
     const CellStore& store() const { return store_; }
@@ -58,16 +60,17 @@ class alignas(64) Cell final : public Client {
     int x() const { return x_; }
     int y() const { return y_; }
     std::uint64_t schedule_hash() const { return meter_.hash(); }
-    /// What loading leaves in a cell beside its voxels.
+    /// The state that loading leaves in a cell beside its voxels.
     struct Loading {
         std::uint64_t hash = 0;  ///< of its schedule
         std::uint64_t hops = 0;
     };
     Loading loading() const { return {meter_.hash(), meter_.statistics().load_hops}; }
     void restore(const Loading& loading) { meter_.restore(loading.hash, loading.hops); }
-    /// What the cell has done so far; what is still going on counts up to `now`.
+    /// Counters of the cell so far; waits and operations still going on count up to cycle `now`.
     CellStatistics statistics(Cycle now) const;
-    /// Cycles that the units' operations of the moment will still take: counted when each began.
+    /// Cycles that the units' current operations still need; statistics counted them in full when the
+    /// operations began.
     struct Remaining {
         Cycle traversal = 0;
         Cycle shading = 0;
@@ -77,9 +80,9 @@ class alignas(64) Cell final : public Client {
     bool busy() const;
     const TimeOut& time_out() const { return time_out_; }
 
-    // For whoever looks at a cell from outside, as it stands at the end of the last cycle run.
+    // For observers: the state at the end of the last cycle run.
     const Environment& environment() const { return env_; }
-    // The links, null over the border, also to set observers before a run.
+    // The links, null at the array's border; also used to set observers before a run.
     Link* input(Side side) const { return inputs_.link(side); }
     Link* output(Side side) const { return router_.link(side); }
     Link* load_input() const { return load_in_; }
@@ -88,9 +91,9 @@ class alignas(64) Cell final : public Client {
     const LoadingUnit& loading_unit() const { return loading_; }
     const Injector& injector() const { return injector_; }
     bool is_home(const Answer& answer) const { return answer.home_x == x_ && answer.home_y == y_; }
-    /// The side over which an answer goes on: along x, then along y.
+    /// The side over which an answer leaves: along x first, then along y.
     Side route(const Answer& answer) const { return Router::way_home(answer, x_, y_); }
-    /// Whether a slot lacks nothing any more; whether any does.
+    /// Whether a slot has all its answers and can be shaded.
     bool complete(const Slot& slot) const {
         return ShadingUnit::complete(slot, store_, env_.settings.shadows);
     }
@@ -110,13 +113,13 @@ class alignas(64) Cell final : public Client {
     void start_traversal(Cycle now);
     void move_answers(Cycle now);
     void move_answer(std::size_t from, Cycle now);
-    /// Bit per side with an answer that may move.
+    /// One bit per side: it holds an answer that is not parked.
     std::uint32_t answers_to_move() const {
         return (pending_ & ~router_.parked()) >> InputPorts::answer_bits;
     }
     void move_rays(Cycle now);
-    // A place is where a ray that can be tested or moved stands: the input buffers, then the cell's own ray,
-    // then the slots' child registers (last, because the store may grow while places are gone through).
+    // A place holds a ray that can be tested or moved. Order of places: input buffers, the cell's own ray,
+    // the child registers of the slots (last, because the store may grow during a loop over the places).
     std::size_t own_place() const { return inputs_.ray_inputs(); }
     std::size_t first_slot_place() const { return own_place() + 1; }
     std::size_t place_count() const { return first_slot_place() + ray_store_.touched(); }
@@ -150,85 +153,87 @@ class alignas(64) Cell final : public Client {
     void move_replies(Cycle now);
     void release_slot(std::uint32_t index, Cycle now);
 
-    // cell_statistics.cpp: what waits, and for what
+    // cell_statistics.cpp: waits and their causes
     Wait wait_of(const RayPacket& packet, std::size_t place) const {
-        // Nobody notes down that a ray has come to the head of its buffer: the link knows.
+        // The cell does not record when a ray reaches the head of its buffer: the link knows it.
         const bool arrived = packet.stage == RayPacket::Stage::untested && packet.wait.cause == Stall::none;
         if (!arrived || place >= own_place()) return packet.wait;
         return {inputs_.head_since(place), Stall::traversal};
     }
-    /// An attempt to move failed because of `cause`.
+    /// An attempt to move failed because of `cause`: begins a wait, unless one with this cause is going on.
     void stall(Wait& wait, Stall cause, std::uint64_t ray, Cycle now) {
         if (wait.cause == cause) return;
         settle(wait, ray, now);
         wait = {now, cause};
     }
-    /// What waited goes on.
+    /// The wait is over: counts its cycles.
     void settle(const Wait& wait, std::uint64_t ray, Cycle now) {
         if (wait.cause != Stall::none && now > wait.since) add_stall(wait, ray, now);
     }
     void add_stall(const Wait& wait, std::uint64_t ray, Cycle now);
 
-    /// Cycles of a unit's operation, with its random stalls.
+    /// The cycles of a unit's operation, random stalls added.
     std::uint32_t unit_cycles(std::uint32_t cycles);
     void want(Cycle cycle) { wakeup_.at(cycle); }
     void use_shading_unit(ShadingUnit::Job job, std::uint32_t slot, std::uint32_t cycles, Cycle now);
-    /// Into the schedule's hash, `hashed`, and to whoever watches.
+    /// Adds an event to the schedule's hash, with the word `hashed`, and tells the observer.
     void record(Cycle now, CellEvent event, std::uint32_t hashed, std::uint64_t ray, std::uint32_t detail);
     void record_send(Cycle now, Side side, int index, std::uint64_t ray) {
         const std::uint32_t detail = std::uint32_t(side) << 8 | unsigned(index);
         record(now, CellEvent::send, detail, ray, detail);
     }
-    /// To whoever watches alone.
+    /// Tells the observer only.
     void tell(Cycle now, CellEvent event, std::uint64_t ray, std::uint32_t detail) const {
         if (env_.meters.observer) env_.meters.observer->cell_event(*this, now, event, ray, detail);
     }
 
-    /// Places of slots that hold a child; there are none without slots in use.
+    /// Number of slot places to scan for children; 0 if no slot holds a child.
     std::size_t slot_places() const { return children_ > 0 ? ray_store_.touched() : 0; }
-    /// Something of a slot has changed: its next child may go, or the shading unit may have work.
+    /// A slot has changed: its next child may leave, or the shading unit may have work.
     void slot_changed() {
         feed_at_ = 0;
         look_to_shade_ = true;
     }
-    /// Bit per place that may hold a ray: inputs and the own ray.
+    /// One bit per ray input that holds a message, and one for the own ray.
     std::uint32_t occupied() const {
         return inputs_.with_rays(pending_) | std::uint32_t(injector_.ray() != nullptr) << own_place();
     }
     bool test_at(std::size_t place, Cycle now);
-    /// The bit of an input or of the own ray in the words below; 0 for a slot's place.
+    /// The bit of a ray input or of the own ray in decided_, pending_ and the router's words; 0 for a slot's
+    /// place.
     std::uint32_t bit_of(std::size_t place) const { return place <= own_place() ? 1U << unsigned(place) : 0; }
     void unpark(Cycle now);
     std::uint32_t bit_in_test() const { return traversal_.packet() ? bit_of(traversal_.place()) : 0; }
 
     static_assert(AgingArbiter::others == 1U << (InputPorts::answer_bits - 1) &&
-                  InputPorts::most_ray_inputs + 1 < InputPorts::answer_bits);  // a bit that no place has
+                  InputPorts::most_ray_inputs + 1 < InputPorts::answer_bits);  // no place has this bit
 
-    // Everything step() reads comes first; what few cells or reports need, last. Prefetch checks it.
+    // Members are ordered by cache line: everything step() reads comes first, data of few cells or of reports
+    // last. Prefetch checks this order.
     friend class Prefetch;
     Environment& env_;
     CellHost* host_ = nullptr;
     Wakeup wakeup_;
     std::uint16_t x_;
     std::uint16_t y_;
-    // pending_: buffers that hold anything, arrived or on the wires. room_made_: a bit per output behind
-    // which room was made since somebody parked on it. Both are the client's.
-    std::uint32_t decided_ = 0;  ///< rays whose test is over
+    // Inherited from Client: pending_ has a bit per buffer that holds a message, arrived or still on the
+    // wires; room_made_ has a bit per output whose far buffer got room since a message parked on it.
+    std::uint32_t decided_ = 0;  ///< bits of rays whose test is over
 
     TraversalUnit traversal_;
-    Cycle feed_at_ = never;  ///< cycle from which on a slot may have a child to send
+    Cycle feed_at_ = never;  ///< first cycle in which a slot may have a child to send
     AgingArbiter aging_;
-    std::uint16_t replies_ = 0;       ///< answers of slots and of the shading unit that want to go
-    std::uint16_t children_ = 0;      ///< on their way out of slots
-    std::uint8_t answers_moved_ = 0;  ///< bit per side whose buffer of answers was read in this cycle
+    std::uint16_t replies_ = 0;       ///< replies that want to leave
+    std::uint16_t children_ = 0;      ///< slots with a ray in their child register
+    std::uint8_t answers_moved_ = 0;  ///< this cycle: bit per side whose overdue answer moved
     Stall cause_ = Stall::none;       ///< why the last attempt to move something failed
     bool look_to_shade_ : 1;          ///< a slot may have work for the shading unit
-    bool replies_first_ : 1;          ///< replies go before answers that came in, which went last
+    bool replies_first_ : 1;          ///< replies go before incoming answers, which had the last turn
     bool answer_moved_ : 1;           ///< this cycle: an answer left an input
-    bool moved_ : 1;                  ///< this cycle: something went on, or came home
-    bool blocked_ : 1;                ///< this cycle: something wanted to and could not
+    bool moved_ : 1;                  ///< this cycle: a message moved, came home or was shaded
+    bool blocked_ : 1;                ///< this cycle: a message could not move
 
-    DepthRuns runs_;            ///< of the voxels, once they are all there
+    DepthRuns runs_;            ///< of the voxels, set after loading
     Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
     TimeOut time_out_;
     Router router_;
@@ -241,7 +246,7 @@ class alignas(64) Cell final : public Client {
 
     CellStore store_;
     RayStore ray_store_;
-    std::uint64_t operations_ = 0;      ///< of the units, for their random stalls
+    std::uint64_t operations_ = 0;      ///< of the units so far, for their random stalls
     std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
     LoadingUnit loading_;
     Link* load_in_ = nullptr;

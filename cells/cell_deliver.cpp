@@ -1,5 +1,5 @@
-// Answers that have come home: to the pixel, to the slot whose child or verdict they are, to a voxel's shadow
-// bits (paper, sections 3.2 and 4.1).
+// Answers that have come home go to the pixel, to the slot that waits for them, or to a voxel's shadow bits
+// (paper, sections 3.2 and 4.1).
 #include "cells/cell.hpp"
 
 namespace raycell {
@@ -20,7 +20,7 @@ void Cell::deliver(const Answer& answer, Cycle now) {
         case RayKind::memo:
             if (answer.kind == Answer::Kind::blocked) store_.lit[answer.slot] &= ~bit;
             store_.known[answer.slot] |= bit;
-            for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {  // others may have waited for it too
+            for (std::uint32_t i = 0; i < ray_store_.touched(); ++i) {  // other slots may wait for it too
                 Slot& slot = ray_store_[i];
                 if (slot.state == Slot::State::waiting && slot.packet->visit.hit.voxel == answer.slot)
                     slot.wait = {now, Stall::shading};
@@ -37,7 +37,7 @@ void Cell::deliver(const Answer& answer, Cycle now) {
 
 void Cell::deliver_to_slot(const Answer& answer, Cycle now) {
     Slot& slot = ray_store_[answer.slot];
-    slot.wait = {now, Stall::shading};  // counts if it was the last answer missing
+    slot.wait = {now, Stall::shading};  // counts only if this was the last missing answer
     slot_changed();
     if (answer.ray_kind == RayKind::shadow) {
         const std::uint64_t bit = std::uint64_t(1) << answer.child;

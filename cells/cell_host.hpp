@@ -1,4 +1,4 @@
-// Who runs cells: a module of its own for each, or a tile for a block of them.
+// The interface of a host of cells: a module for each cell, or a tile for a block of cells.
 #pragma once
 
 namespace raycell {
@@ -8,9 +8,9 @@ class Cell;
 class CellHost {
   public:
     virtual ~CellHost() = default;
-    /// Has the cell's step() called in this evaluation phase.
+    /// Calls the cell's step() in this evaluation phase.
     virtual void activate(Cell& cell) = 0;
-    /// The cell will soon be activated: time to ask for its memory.
+    /// Hint: the cell will soon be activated, so its memory may be prefetched.
     virtual void foresee(const Cell& /*cell*/) const {}
 };
 

@@ -1,4 +1,4 @@
-// Rays that a cell puts on their way: its own, and the children of its slots (paper, section 3.2).
+// Rays that a cell sends: its own, and the children of its slots (paper, section 3.2).
 #include <algorithm>
 
 #include "cells/cell.hpp"
@@ -36,7 +36,7 @@ void Cell::feed_children(Cycle now) {
         const std::uint64_t to_ask = slot.to_ask;
         slot.child = next_child(slot, i, now);
         children_ += slot.child != nullptr;
-        if (slot.to_ask != to_ask) look_to_shade_ = true;  // nothing left to ask may complete it
+        if (slot.to_ask != to_ask) look_to_shade_ = true;  // the slot may be complete now
     }
 }
 
@@ -48,7 +48,7 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
         const std::uint64_t bit = std::uint64_t(1) << source;
         slot.to_ask &= ~bit;
         if (env_.context.settings.shadows == Shadows::memo) {
-            if (asked_[hit.voxel] & bit) {  // another hit has asked already
+            if (asked_[hit.voxel] & bit) {  // another hit has already asked
                 slot.wait = {now, Stall::shading};
                 return next_child(slot, index, now);
             }

@@ -1,4 +1,4 @@
-// A cell while the scene is loaded: spans and what is broadcast go through it from the west to the east.
+// A cell during loading: spans and broadcast messages pass through it from west to east.
 #include "cells/cell.hpp"
 
 namespace raycell {

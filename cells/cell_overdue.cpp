@@ -1,5 +1,4 @@
-// What has waited for too long goes first (cells/units/aging_arbiter.hpp); the usual order follows for the
-// others.
+// Overdue messages move first (cells/units/aging_arbiter.hpp), then all others in the usual order.
 #include "cells/cell.hpp"
 
 namespace raycell {
@@ -32,7 +31,7 @@ void Cell::move_overdue(Cycle now) {
             move_answer(overdue.index, now);
             if (in.occupancy(index) < held) answers_moved_ |= std::uint8_t(1U << overdue.index);
         } else if (overdue.kind == Kind::reply) {
-            move_replies(now);  // all of them: there are finitely many
+            move_replies(now);  // all replies move: their number is bounded
         } else {
             try_ray(*packet_at(overdue.index), overdue.index, now);
         }

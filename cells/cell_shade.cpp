@@ -1,12 +1,12 @@
-// Hits: into a slot or straight into the shading unit, its jobs, and the replies that leave (paper, sections
-// 3.2 and 4.1).
+// Hits go into a slot or straight into the shading unit; the unit's jobs; the replies that leave (paper,
+// sections 3.2 and 4.1).
 #include "cells/cell.hpp"
 
 namespace raycell {
 
 bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     if (env_.machine.recovery == Recovery::none && !ray_store_.has_room(packet.ray.generation)) {
-        cause_ = Stall::no_slot;  // it may be full for long: the port does not matter then
+        cause_ = Stall::no_slot;  // named before store_port: the store may stay full for long
         return false;
     }
     if (store_port_ == now) {
@@ -16,7 +16,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     }
     const auto index = ray_store_.allocate(packet.ray.generation);
     if (!index) return postpone(packet, place, now);
-    // Before the slot is filled: a child that hits its own cell comes from a slot of this same store.
+    // Removed before the slot is filled: a child that hits its own cell comes from a slot of this same store.
     remove_from(place);
     store_port_ = now;
     Slot& slot = ray_store_[*index];
@@ -30,7 +30,7 @@ bool Cell::accept_hit(RayPacket& packet, std::size_t place, Cycle now) {
     return true;
 }
 
-/// A hit that waits for nothing needs no slot.
+/// A hit that waits for no other ray needs no slot.
 bool Cell::accept_direct(RayPacket& packet, std::size_t place, Cycle now) {
     if (!shading_.idle() || slot_complete()) {
         cause_ = Stall::shading;
@@ -87,7 +87,7 @@ void Cell::finish_shading(Cycle now) {
     using Job = ShadingUnit::Job;
     if (shading_.job() == Job::direct_answer || !shading_.finished(now, wakeup_)) return;
     if (shading_.job() == Job::direct) {
-        shading_.hold_answer();  // leaves in move_replies
+        shading_.hold_answer();  // the reply leaves in move_replies()
         ++replies_;
         return;
     }
@@ -131,7 +131,7 @@ void Cell::move_replies(Cycle now) {
         if (slot.state != Slot::State::to_answer) continue;
         Answer answer = answer_to(slot.packet->ray, Answer::Kind::intensity);
         answer.colour = slot.result;
-        const Wait wait = slot.wait;  // a local answer may be for a slot of this same store
+        const Wait wait = slot.wait;  // copied: a local answer may change a slot of this same store
         if (!send_answer(answer, now)) {
             stall(slot.wait, cause_, answer.id, now);
             waits = true;
@@ -144,7 +144,8 @@ void Cell::move_replies(Cycle now) {
         went = true;
     }
     if (waits) blocked_ = true;
-    // By what has moved, not by how often the cell has run: a cell that runs in every cycle does the same.
+    // The turn changes with messages moved, not with steps run, so that a cell that runs in every cycle does
+    // the same.
     if (went) {
         replies_first_ = false;
     } else if (waits && answer_moved_) {

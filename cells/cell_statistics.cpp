@@ -1,4 +1,4 @@
-// What a cell counts about itself, and what in it stands still at the moment.
+// A cell's counters, and the waits that are going on in it.
 #include "cells/cell.hpp"
 
 namespace raycell {

@@ -21,7 +21,7 @@ struct WaitingRay {
     RayPacket* packet;
 };
 
-/// Cycles on a link of the messages that rays and answers are.
+/// Cycles on a link, by kind of message.
 struct LinkCycles {
     int ray;
     int shadow_ray;
@@ -29,18 +29,19 @@ struct LinkCycles {
     int verdict;
 };
 
-/// What all cells are built with.
+/// The constant data that all cells share.
 struct CellConfig {
     const PictureSettings settings;
     const MachineSettings machine;
     Context context;
     MessageBits bits;
-    LinkCycles cycles;  ///< for `bits`: no division in every hop
+    LinkCycles cycles;  ///< for `bits`; computed once, to save a division per hop
     BufferClasses classes;
-    /// Cycles from an answer's arrival until its cell need look at it; 0 where it may stand in a ray's way.
+    /// Cycles from an answer's arrival until its cell must look at it; 0 where rays and answers share a
+    /// buffer.
     int answer_routing;
 
-    /// The scene (and the traffic, which may be null) must outlive it; the settings are copied.
+    /// `scene` and `traffic` (may be null) must outlive it; the settings are copied.
     CellConfig(const CellScene& scene, const PictureSettings& picture_settings,
                const MachineSettings& machine_settings, const SyntheticTraffic* traffic);
 
@@ -49,11 +50,11 @@ struct CellConfig {
     const CostTable& costs() const { return machine.costs; }
     int cycles_for(int message_bits_) const { return link_cycles(message_bits_, machine.link_bits); }
     int load_bits(const LoadItem& item) const;
-    /// Gives a link its random stalls, if there are any, by its name.
+    /// Gives a link its random stalls, if the settings ask for any; its name tells links apart.
     void stall(Link& link, const std::string& name) const;
 };
 
-/// What cells are built with, and what changes while they run.
+/// CellConfig and the shared state that changes during a run.
 struct Environment : CellConfig {
     const ArrayShare share;
     Scheduler& scheduler;
@@ -63,10 +64,10 @@ struct Environment : CellConfig {
     Meters meters;
     Phase phase = Phase::load;
     Cycle phase_start = 0;
-    bool draining = false;  ///< no cell sends new rays: what still stands in a buffer at the end is locked
+    bool draining = false;  ///< no cell sends new rays; a message left in a buffer at the end is deadlocked
     std::vector<WaitingRay> waiting;  ///< scratch of the cell that is running
 
-    /// Without `part` the whole array is simulated here.
+    /// `part`: the rows that this process simulates; null: the whole array.
     Environment(const CellScene& scene, const PictureSettings& picture_settings,
                 const MachineSettings& machine_settings, Scheduler& s, Picture& p,
                 const SyntheticTraffic* traffic = nullptr, const ArrayShare* part = nullptr)
@@ -77,7 +78,7 @@ struct Environment : CellConfig {
         meters.pixel_hops.resize(p.pixels.size());
     }
 
-    /// A ray, or the answer to it, goes over a link.
+    /// Counts a hop of a ray or of its answer for the ray's pixel; only in phase trace.
     void count_hop(std::uint64_t ray) {
         if (phase == Phase::trace) ++meters.pixel_hops[pixel_of(ray)];
     }

@@ -56,7 +56,7 @@ std::optional<LoadItem::Kind> pass_load(LoadingUnit& unit, LinkIn& from, LinkOut
     LoadItem* item = unit.work(from, x, environment.costs(), now, wakeup);
     if (!item) return std::nullopt;
     const LoadItem::Kind kind = item->kind;
-    // Before a span goes on to the next cell.
+    // Asked before take(), which advances a span to the next column.
     const bool ends = LoadingUnit::ends_at(*item, x, environment.width());
     if (!ends && !east->can_send(0, wakeup.next)) return std::nullopt;
     meter.loaded(environment.meters.counters, kind, ends, now);

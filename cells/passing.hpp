@@ -1,5 +1,5 @@
-// What every cell does with what passes through it and with its own pixel, whatever it is made of: the
-// array's own cells and those of somebody else's.
+// What every kind of cell does with messages that pass through it and with its own pixel: shared by the
+// array's cells and by a user's own cell modules.
 #pragma once
 
 #include "cells/environment.hpp"
@@ -8,8 +8,8 @@
 
 namespace raycell {
 
-/// Sends a tested ray that needs an output over it; `out`, of its side, must be free. Cells know their links,
-/// others' modules LinkOut.
+/// Sends a tested ray over `out`, the output of the side that it needs; a message must be able to start there
+/// now. A template, because cells use Link and a user's modules use LinkOut.
 template <typename Out>
 void send_ray(RayPacket& packet, Out& out, Environment& environment, CellMeter& meter) {
     const Need need = packet.need;
@@ -25,7 +25,7 @@ void send_ray(RayPacket& packet, Out& out, Environment& environment, CellMeter& 
     out.send(need.index, Message(&packet), cycles);
 }
 
-/// Sends an answer on its way home; `out` must be free.
+/// Sends an answer towards its home over `out`; a message must be able to start there now.
 template <typename Out>
 void send_answer(Answer* answer, Out& out, Environment& environment, CellMeter& meter) {
     const bool intensity = answer->kind == Answer::Kind::intensity;
@@ -36,21 +36,21 @@ void send_answer(Answer* answer, Out& out, Environment& environment, CellMeter& 
              environment.answer_routing);
 }
 
-/// The answer that a tested ray which needs one ends in.
+/// The answer in which a tested ray ends, if it needs one.
 Answer response_of(const RayPacket& packet, const Context& context);
-/// A ray ends here, in the answer that it needs or without one: counts it and takes it back. Not those that
-/// are postponed.
+/// A ray ends here, with or without an answer: counts it and gives the packet back to its pool. Not for
+/// postponed rays.
 void end_ray(RayPacket& packet, Environment& environment, CellMeter& meter);
-/// A ray that is put on its way: a child, a primary or a precast ray.
+/// Makes and counts the packet of a ray that starts now: a child, a primary or a precast ray.
 RayPacket* launch(const Ray& ray, Environment& environment);
-/// The primary ray of pixel (x, y), which is due.
+/// Returns the primary ray of pixel (x, y), which must be due, and notes it as sent.
 Ray begin_primary(Injector& injector, Environment& environment, int x, int y);
-/// The answer to it, or the notice that it was postponed.
+/// Handles the answer to the primary ray of pixel (x, y), which may be a postponed notice.
 void end_primary(const Answer& answer, Injector& injector, Environment& environment, int x, int y);
 
-/// One cycle of loading in column x: works on the oldest message of `from`, puts what it leaves into `store`,
-/// and passes it on over `east`, null over the array's border. Returns what kind of message was taken, if
-/// any.
+/// One cycle of loading in column x: works on the oldest message of `from`, stores its voxel in `store` if it
+/// makes one, and passes it on over `east` (null at the array's border). Returns the kind of the message if
+/// its work ended in this cycle.
 std::optional<LoadItem::Kind> pass_load(LoadingUnit& unit, LinkIn& from, LinkOut* east, CellStore& store,
                                         Environment& environment, CellMeter& meter, int x, Wakeup& wakeup);
 

@@ -37,7 +37,7 @@ void Link::make_buffers(std::uint32_t used) {
 }
 
 std::size_t Link::bytes(std::uint32_t used) {
-    constexpr std::size_t allocation = 64;  // what the heap adds to lines
+    constexpr std::size_t allocation = 64;  // what the heap adds per block of cache lines, in bytes
     const auto buffers = std::size_t(__builtin_popcount(used));
     if (buffers <= own_buffers) return sizeof(Link);
     return sizeof(Link) + allocation + (buffers - own_buffers) * sizeof(Buffer);
@@ -66,7 +66,7 @@ void Link::set_observer(LinkObserver* observer) { extras().observer = observer; 
 void Link::set_name(std::string name) { extras().name = std::move(name); }
 
 const sc_core::sc_event& Link::default_event() const {
-    // Nothing that a run tells changes by it.
+    // Making the event changes no result of a run.
     auto& bell = const_cast<Link*>(this)->extras().bell;
     if (!bell) bell = std::make_unique<Extras::Bell>();
     return bell->event;
@@ -116,7 +116,7 @@ Link::Room Link::room(int index) const {
     return wires_free_ > now ? Room::wires_busy : Room::free;
 }
 
-/// Room for more messages, up to `depth`; most buffers of a deep machine never fill.
+/// Doubles the capacity, up to `depth`: most buffers of a deep machine never fill.
 void Link::Buffer::grow(int depth) {
     const auto larger = std::uint16_t(std::min(depth, 2 * int(capacity)));
     auto* entries = new Entry[larger];
@@ -146,7 +146,7 @@ Link::ClassStatistics Link::statistics(int index) const {
     return sum;
 }
 
-/// What stands in a buffer then counts as sent when the new phase begins.
+/// Messages still in a buffer count as sent at the start of the new phase.
 void Link::reset_statistics() {
     for (int index = 0; index < classes_; ++index) {
         if (!find(index)) continue;
@@ -163,7 +163,7 @@ std::uint64_t Link::busy_cycles() const {
     for (int index = 0; index < classes_; ++index) {
         if (const Buffer* b = find(index)) sum += b->busy;
     }
-    // A message on the wires counted for all its cycles when it was sent.
+    // A message still on the wires was counted with all its cycles when it was sent.
     const Cycle now = scheduler_.now();
     return wires_free_ > now ? sum - std::min<std::uint64_t>(sum, wires_free_ - now) : sum;
 }

@@ -14,25 +14,25 @@
 
 namespace raycell {
 
-/// What the sending side sees, for the ports of modules. Any channel may implement it; it keeps time by the
-/// Scheduler, and default_event(), for modules that are sensitive to their ports, is notified when the
-/// scheduler wakes it in the cycle after room was made for a sender that was refused.
+/// The interface of the sending side, for the ports of modules. Any channel may implement it. The channel
+/// keeps time by the Scheduler. Modules may be sensitive to default_event(): it is notified, by the
+/// scheduler's wake, in the cycle after room was made for a sender that was refused.
 class LinkOut : virtual public sc_core::sc_interface {
   public:
-    /// Whether a message of this class can start now: wires idle and room in its buffer, as they stood when
-    /// the cycle began. If not, `retry` is lowered to the cycle in which the wires are free, or the sender is
-    /// told in the cycle after room was made.
+    /// Whether a message of this class can start now: the wires are idle and its buffer has room, as of the
+    /// start of the cycle. If the wires are busy, lowers `retry` to the cycle in which they are free; if
+    /// there is no room, the sender is told in the cycle after room was made.
     virtual bool can_send(int index, Cycle& retry) = 0;
-    /// Starts a message; it is visible at the far end after its link cycles. The receiver is woken `later`
-    /// cycles after that: for messages which it does nothing with before.
+    /// Starts a message; it is visible at the far end after `cycles` cycles. The receiver is woken `later`
+    /// cycles after that, for messages that it can't act on earlier.
     virtual void send(int index, const Message& message, int cycles, int later = 0) = 0;
 };
 
-/// What the receiving side sees, likewise: default_event() is notified in the cycle in which a message can be
-/// seen.
+/// The interface of the receiving side. default_event() is notified in the cycle in which a message becomes
+/// visible.
 class LinkIn : virtual public sc_core::sc_interface {
   public:
-    /// The oldest message of a class if it has arrived, else an empty one.
+    /// The oldest message of a class if it has arrived, else an empty message.
     virtual Message front(int index) const = 0;
     /// Cycle in which the oldest message arrived.
     virtual Cycle arrival(int index) const = 0;
@@ -44,25 +44,26 @@ class LinkIn : virtual public sc_core::sc_interface {
 /// The channel. Writes and reads of a cycle become visible in the next one, so results do not depend on the
 /// order in which cells run. Declared final so that calls from a cell are not virtual. An array has four
 /// links per cell: data that few links need is kept in Extras, and classes that a link never carries have no
-/// buffer. Members are ordered by cache line: what every hop needs first, then one line for each buffer.
+/// buffer. Members are ordered by cache line: the data of every hop first, then one line for each buffer.
 class alignas(64) Link final : public LinkOut, public LinkIn {
   public:
     struct ClassStatistics {
         std::uint64_t sent = 0;
         std::uint64_t delivered = 0;
-        std::uint64_t occupied_cycles = 0;  ///< sum over messages of the cycles that they took up a place
+        std::uint64_t occupied_cycles = 0;  ///< sum over messages of their cycles in the buffer
         int peak = 0;
     };
     static constexpr int most_classes = 5;
     static constexpr int most_depth = 65535;
     static constexpr std::uint32_t all_classes = ~std::uint32_t(0);
 
-    /// `used`: a bit for each of the classes that the link carries.
+    /// `used` has a bit for each class that the link carries. Throws std::invalid_argument for a wrong depth
+    /// or number of classes.
     Link(Scheduler& scheduler, int classes, int depth, std::uint32_t used = all_classes);
-    /// Has no buffers and no wires: whatever is sent goes to `beyond`, and that says whether it can.
+    /// A link without buffers and wires: it forwards send() and can_send() to `beyond`.
     Link(Scheduler& scheduler, int classes, LinkOut& beyond);
 
-    /// Notified for the sender and for the receiver alike; a link has one from the first call on.
+    /// Notified for both the sender and the receiver; made by the first call.
     const sc_core::sc_event& default_event() const override;
 
     void connect_source(Client& source) { source_ = &source; }
@@ -76,14 +77,14 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     void report_arrivals(Arrivals& arrivals, std::uint32_t port);
     /// Random stalls on the wires (MachineSettings::stall); `who` tells links apart.
     void set_stall(double probability, std::uint64_t seed, std::uint64_t who);
-    /// Null: nobody watches.
+    /// Null: no observer.
     void set_observer(LinkObserver* observer);
-    /// For reports; those between the cells of an array have none.
+    /// A name for reports; links between the cells of an array have none.
     void set_name(std::string name);
     std::string name() const { return extras_ ? extras_->name : std::string(); }
 
     bool can_send(int index, Cycle& retry) override;
-    /// What can_send() would say, without asking to be woken: for whoever watches.
+    /// The result of can_send() without a request to be woken, for observers.
     enum class Room : std::uint8_t { free, wires_busy, full };
     Room room(int index) const;
     void send(int index, const Message& message, int cycles, int later = 0) override;
@@ -98,11 +99,12 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         return buffer && buffer->count > 0 ? buffer->at(0).visible : never;
     }
     void pop(int index) override;
-    /// Puts a message into its buffer that has come some other way, in cycle `arrived`; it has room.
+    /// Puts a message that came by another way into its buffer, which must have room; it arrived in cycle
+    /// `arrived`.
     void put(int index, const Message& message, Cycle arrived);
 
-    /// For a sink that knows where a class's buffer stands, and need not touch the link's first line
-    /// for it. Only for classes that the link carries.
+    /// The place of a class's buffer. A sink that keeps it reads the buffer without touching the link's first
+    /// cache line. Only for classes that the link carries.
     std::uint8_t place(int index) const { return places_[std::size_t(index)]; }
     const Message* head_at(std::uint8_t place, Cycle now) const {
         const Buffer& b = buffer_at(place);
@@ -110,33 +112,34 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         const Entry& entry = b.at(0);
         return entry.visible <= now ? &entry.message : nullptr;
     }
-    /// Of a buffer that is not empty.
+    /// Cycle in which the oldest message arrives; the buffer must not be empty.
     Cycle arrival_at(std::uint8_t place) const { return buffer_at(place).at(0).visible; }
-    /// Cycle from which on the oldest message has been both arrived and the oldest.
+    /// Cycle since which the oldest message has been at the head of its buffer and visible.
     Cycle head_since_at(std::uint8_t place) const {
         const Buffer& b = buffer_at(place);
         return b.last_pop == never ? b.at(0).visible : std::max(b.at(0).visible, b.last_pop);
     }
     int occupancy_at(std::uint8_t place) const { return buffer_at(place).count; }
     bool sender_waits_at(std::uint8_t place) const { return buffer_at(place).sender_waits; }
-    /// Returns what the sink is to take from its pending_: bits if the buffer is empty now.
+    /// Removes the oldest message. Returns the bits that the sink must clear in its pending_: 0 unless the
+    /// buffer is empty now.
     std::uint32_t pop_at(std::uint8_t place, Cycle now);
-    /// Asks the link to keep `bits`, of 0 to 15, set in its sink's pending_ while the buffer of a class holds
-    /// anything, on the wires or arrived: so a cell need not look into empty buffers. Throws std::logic_error
-    /// without a sink.
+    /// Asks the link to keep `bits` (among bits 0 to 15) set in its sink's pending_ while the buffer of a
+    /// class holds a message, arrived or on the wires, so that a cell need not look into empty buffers.
+    /// Throws std::logic_error without a sink, std::invalid_argument for other bits.
     void watch(int index, std::uint32_t bits);
-    /// Asks the link to set `bits`, of 0 to 15, in its source's room_made_ when a sender that can_send() has
-    /// refused for want of room is woken: until then it need not ask again.
+    /// Asks the link to set `bits` (among bits 0 to 3) in its source's room_made_ when it wakes a sender that
+    /// can_send() refused for lack of room. Until then the sender need not ask again.
     void tell_room(std::uint32_t bits) { room_bits_ = std::uint8_t(bits & 15U); }
-    /// Whether a sender was refused for want of room and none has been made since.
+    /// Whether a sender was refused for lack of room and no room has been made since.
     bool sender_waits(int index) const { return buffer(index).sender_waits; }
     int occupancy(int index) const override {
         const Buffer* buffer = find(index);
         return buffer ? buffer->count : 0;
     }
-    /// Whether the buffer of a class has no room left; for looking at a machine, not for sending.
+    /// Whether the buffer of a class has no room left; for observers, not for sending.
     bool full(int index) const { return occupancy(index) >= depth_; }
-    /// What stands in a buffer, oldest first, for looking at a machine; `place` below occupancy().
+    /// A message in a buffer, for observers. `place` counts from the oldest, 0, and is below occupancy().
     struct Held {
         Message message;
         Cycle visible = 0;  ///< when it arrived, or will
@@ -147,13 +150,13 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
 
     int classes() const { return classes_; }
     int depth() const { return depth_; }
-    /// Since the last reset; what still stands in a buffer counts up to now.
+    /// Counts since the last reset; messages still in a buffer count up to now.
     ClassStatistics statistics(int index) const;
-    /// Begins a phase: counts anew.
+    /// Restarts the counts at the start of a phase.
     void reset_statistics();
     std::uint64_t busy_cycles() const;
 
-    /// Bytes of an unwatched link with empty buffers.
+    /// Bytes of a link without observer, with empty buffers, that carries the classes `used`.
     static std::size_t bytes(std::uint32_t used);
 
     /// The place of a class's buffer in a link that carries the classes `used`.
@@ -166,11 +169,11 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     using Entry = Held;
     struct alignas(64) Buffer {
         union {
-            Entry first;  ///< all there is at depth 1
-            Entry* ring;  ///< of `capacity`, once more than one has been needed
+            Entry first;  ///< while capacity is 1
+            Entry* ring;  ///< of `capacity` entries, once more than one was needed
         };
         Cycle last_pop = never;
-        std::uint64_t occupied = 0;  ///< cycles of pops less cycles of sends: needs no note of when
+        std::uint64_t occupied = 0;  ///< sum of pop cycles - sum of send cycles: no time stamp per message
         std::uint32_t sent = 0;
         std::uint32_t busy = 0;  ///< cycles that its messages took on the wires
         std::uint16_t pending_bits = 0;
@@ -180,7 +183,7 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         std::uint16_t popped_now = 0;  ///< in cycle last_pop: not yet room for the sender
         std::uint16_t peak = 0;
         bool sender_waits = false;
-        bool watched = false;  ///< the link has extras that are told of every pop
+        bool watched = false;  ///< the link has Extras: pops are told to its observer
 
         Buffer() : first() {}
         ~Buffer() {
@@ -197,7 +200,7 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         std::uint32_t still_seen(Cycle now) const { return last_pop == now ? popped_now : 0; }
         void grow(int depth);
     };
-    /// What only links have that are watched, stalled or at the border.
+    /// Data that only some links need: observed or stalled links, and links at the border.
     struct Extras {
         Arrivals* arrivals = nullptr;
         LinkObserver* observer = nullptr;
@@ -239,16 +242,16 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
     Cycle wires_free_ = 0;
     std::uint16_t depth_;
     std::uint8_t classes_ : 4;
-    std::uint8_t room_bits_ : 4;                     ///< of the source's room_made_
-    std::array<std::uint8_t, most_classes> places_;  ///< of the classes' buffers
+    std::uint8_t room_bits_ : 4;                     ///< bits to set in the source's room_made_
+    std::array<std::uint8_t, most_classes> places_;  ///< places of the classes' buffers
     Client* sink_ = nullptr;
     Client* source_ = nullptr;
     std::unique_ptr<Extras> extras_;
-    static constexpr std::size_t own_buffers = 3;  ///< all that a link between cells has
+    static constexpr std::size_t own_buffers = 3;  ///< enough for a link between cells
     std::array<Buffer, own_buffers> buffers_;
 };
 
-// What a cell does with its links in every hop.
+// Inline, because a cell calls these in every hop.
 
 inline bool Link::can_send(int index, Cycle& retry) {
     Buffer& b = buffer(index);
@@ -284,7 +287,7 @@ inline void Link::send(int index, const Message& message, int cycles, int later)
     if (sink_) sink_->pending_ |= b.pending_bits;
     ++b.sent;
     b.occupied -= now;
-    // A place read in this cycle still counts: the peak must not depend on which end ran first.
+    // A message read in this cycle still counts: the peak must not depend on which end ran first.
     b.peak = std::max(b.peak, std::uint16_t(b.count + b.still_seen(now)));
     b.busy += std::uint32_t(cycles);
     if (extras_) tell_sent(index, message, cycles);

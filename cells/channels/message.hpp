@@ -1,4 +1,4 @@
-// A message as the links carry it: a pointer to what travels. Owned by whoever holds it last.
+// A message as the links carry it: a pointer to its content, owned by the current holder.
 #pragma once
 
 #include "cells/channels/stall.hpp"
@@ -10,22 +10,22 @@
 
 namespace raycell {
 
-/// A ray and what the cell that it stands in knows about it already.
+/// A ray and what its current cell already knows about it.
 struct RayPacket {
     enum class Stage : std::uint8_t { untested, in_test, decided };
     Ray ray;
     Visit visit;
     Stage stage = Stage::untested;
-    Need need;                  ///< once it has been tested
-    std::uint32_t hops = 0;     ///< since it was put on its way
-    std::uint64_t decided = 0;  ///< cycle in which the test was over
+    Need need;                  ///< set by the test
+    std::uint32_t hops = 0;     ///< since it was launched
+    std::uint64_t decided = 0;  ///< cycle in which its test ended
     Wait wait;
-    std::uint64_t launched = 0;  ///< cycle in which it was put on its way
+    std::uint64_t launched = 0;  ///< cycle of its launch
 };
-static_assert(sizeof(RayPacket) == 3 * 64);  // lines of memory: every hop moves them all
+static_assert(sizeof(RayPacket) == 3 * 64);  // three cache lines: every hop moves them all
 
-/// A load message: polygons from geometry, trapezes from precomputation and down the column of distributors,
-/// spans in the rows; the others are broadcast.
+/// A load message. Geometry sends polygons; precomputation sends trapezes, which travel down the column of
+/// distributors; spans travel in the rows. All other kinds are broadcast.
 struct LoadItem {
     enum class Kind : std::uint8_t { setup, features, polygon, trapeze, span, end_of_scene };
     Kind kind = Kind::end_of_scene;

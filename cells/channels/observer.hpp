@@ -1,5 +1,5 @@
-// What watchers of a run are told, in the cycle in which it happens: for probes, golden vectors, the life of
-// a ray. A run that nobody watches pays for a comparison with null.
+// Interfaces of the observers of a run: probes, golden vectors, the life of a ray. They are told of each
+// event in its own cycle. A run without observers costs one comparison with null per event.
 #pragma once
 
 #include <cstdint>
@@ -23,27 +23,27 @@ enum class CellEvent : std::uint32_t {
     postpone,  ///< a ray that found no slot was destroyed
     shade,     ///< the shading unit finished a slot; detail: the slot
     test,      ///< the traversal unit began a ray's test; detail: its Visit::Event
-    launch,    ///< a ray was put on its way (again); detail: its RayKind
+    launch,    ///< a ray was launched, also again; detail: its RayKind
     answer,    ///< an answer set out for its home; detail: Answer::Kind
-    direct,    ///< a hit that waits for nothing went into the shading unit
+    direct,    ///< a hit that needs no slot went into the shading unit
     silent     ///< a precast ray reached its source: it ends without an answer
 };
 
 class CellObserver {
   public:
     virtual ~CellObserver() = default;
-    /// `ray`: id of the ray that it is about, for answers the ray that they answer; 0 for loading.
+    /// `ray`: id of the ray concerned, for an answer that of the ray that it answers; 0 for loading.
     virtual void cell_event(const Cell& cell, Cycle now, CellEvent event, std::uint64_t ray,
                             std::uint32_t detail) = 0;
-    /// A ray is put on its way (again), before the event `launch`; `parent`: whose child it is, null for
-    /// primary and precast rays.
+    /// A ray is launched, also again; called before the event `launch`. `parent` is null for primary and
+    /// precast rays.
     virtual void launched(const Cell& /*cell*/, Cycle /*now*/, const Ray& /*ray*/, const Ray* /*parent*/) {}
-    /// A ray, or the answer to it, goes on after it has waited `cycles` in a cell.
+    /// A ray or its answer moves on after it has waited `cycles` in a cell.
     virtual void stalled(const Cell& /*cell*/, Cycle /*now*/, std::uint64_t /*ray*/, Stall /*cause*/,
                          Cycle /*cycles*/) {}
     /// The whole array begins a phase; `first` is its first cycle.
     virtual void phase_begins(Phase /*phase*/, Cycle /*first*/) {}
-    /// From this cycle on new rays are held back, or are not any more (Environment::draining).
+    /// From this cycle on cells send no new rays (`on`), or send them again (Environment::draining).
     virtual void draining(bool /*on*/, Cycle /*now*/) {}
     /// An exterior processor's answer starts over the border into cell (x, y).
     virtual void exterior_answered(int /*x*/, int /*y*/, Cycle /*now*/, const Answer& /*answer*/) {}

@@ -6,11 +6,11 @@
 namespace raycell {
 namespace {
 
-/// What a record is about; its first word is number · 256 + class · 16 + kind.
+/// Kinds of records. The first word of a record is half link number · 256 + class · 16 + kind.
 enum class Record : std::uint32_t {
-    read = 1,  ///< a message has left the buffer: room at the source
-    ray,       ///< still to be tested
-    ray_out,   ///< tested: on its way over the array's border
+    read = 1,  ///< a message has left the sink's buffer: the source has room
+    ray,       ///< an untested ray
+    ray_out,   ///< a tested ray that goes over the array's border
     answer,
     trapeze,    ///< a load message with a trapeze
     broadcast,  ///< another load message

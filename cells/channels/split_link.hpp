@@ -1,5 +1,4 @@
-// Links whose two ends are in machines of different ranks: each rank has a link of its own, half of the
-// whole.
+// Links between cells of different ranks: each of the two ranks has a link object of its own, a half link.
 #pragma once
 
 #include <cstddef>
@@ -11,41 +10,45 @@
 
 namespace raycell {
 
-/// All halves that a rank shares with one other rank.
+/// All half links that a rank shares with one other rank.
 ///
-/// The source's half keeps its messages until the far end has read them, so room, wires, stalls and who waits
-/// for room are the whole link's; the sink's half has the messages and the statistics. What is sent and read
-/// in a cycle goes into `out()`, and is delivered to the other rank's halves at the end of that same cycle:
-/// as the writes and reads of a cycle show in the next one, neither end can tell the halves from a whole.
+/// The source's half keeps its messages until the far end has read them, so its room, wires, stalls and
+/// waiting senders are those of a whole link; the sink's half has the messages and the statistics. The
+/// messages sent and read in a cycle go into `out()` and are delivered to the other rank's halves at the end
+/// of the same cycle. Writes and reads become visible in the next cycle anyway, so neither end sees a
+/// difference from a whole link.
 ///
-/// Both ranks must add their halves in the same order: a half's number is its name on the way.
+/// Both ranks must add their halves in the same order: the order gives a half its number, which names it in
+/// records.
 class SplitLinks {
   public:
     SplitLinks() = default;
     SplitLinks(const SplitLinks&) = delete;
     SplitLinks& operator=(const SplitLinks&) = delete;
 
-    /// A new half, kept here.
+    /// Makes a half link, owned by this object.
     Link& make_source(Scheduler& scheduler, int classes, int depth, std::uint32_t used = Link::all_classes);
     Link& make_sink(Scheduler& scheduler, int classes, int depth);
-    /// Halves of somebody else's, who must keep them. Nobody else may observe them.
+    /// Adds a half link that the caller owns; it must outlive this object, and must have no other observer.
     void add_source(Link& half);
     void add_sink(Link& half);
     std::size_t halves() const { return ends_.size(); }
-    /// The half of this number.
+    /// The half link of this number.
     const Link& half(std::size_t number) const { return *ends_[number]->link; }
     bool has_source(std::size_t number) const { return ends_[number]->source; }
 
-    /// What was sent and read since the last clear(). The first `prefix` bytes are for whoever carries it.
+    /// Records of the messages sent and read since the last clear(). The first `prefix` bytes are for the
+    /// transport.
     Bytes& out() { return out_; }
     /// Keeps `prefix` bytes free at the beginning of out().
     void set_prefix(std::size_t prefix);
-    /// What went out is now the other rank's: gives back what carried it, and empties out() but its prefix.
+    /// To be called when out() has been handed over: gives the sent messages' objects back to their pools and
+    /// empties out() except for its prefix.
     void clear(MessagePools& pools);
 
-    /// What the other rank's out() held behind its prefix, in the cycle in which it was sent. Receivers of
-    /// answers are woken `answers_later` cycles after their arrival (Link::send()). Throws std::logic_error
-    /// for what no rank of the same machine can have sent.
+    /// Delivers the content of the other rank's out() behind its prefix, in the cycle in which it was sent.
+    /// Receivers of answers are woken `answers_later` cycles after the arrival (Link::send()). Throws
+    /// std::logic_error for records that no rank of the same machine can have sent.
     void deliver(const std::byte* data, std::size_t size, MessagePools& pools, int answers_later = 0);
 
   private:
@@ -70,7 +73,7 @@ class SplitLinks {
 
     std::vector<std::unique_ptr<End>> ends_;
     std::vector<std::unique_ptr<Link>> made_;
-    std::vector<Message> gone_;  ///< their objects are this rank's still
+    std::vector<Message> gone_;  ///< sent since the last clear(); their objects still belong to this rank
     Bytes out_;
     std::size_t prefix_ = 0;
 };

@@ -1,5 +1,4 @@
-// Why something in a cell that could go on does not: the causes that a cell's step tests, and what a cell
-// counts about itself.
+// Why a message in a cell does not move: the causes that a cell's step tests, and the counters of a cell.
 #pragma once
 
 #include <array>
@@ -9,7 +8,7 @@
 
 namespace raycell {
 
-/// What a ray or an answer waits for. The first cause that the cell finds is the one that counts.
+/// What a ray or an answer waits for. The first cause that the cell finds counts.
 enum class Stall : std::uint8_t {
     none,
     traversal,    ///< an untested ray at the head of its buffer or register: the traversal unit is at work
@@ -26,16 +25,16 @@ constexpr std::array<const char*, stall_causes + 1> stall_names = {
     "none",        "traversal", "output_full", "output_busy", "answer_full",
     "answer_busy", "no_slot",   "shading",     "store_port"};
 
-/// Since when something has waited for what. A cause only changes in a cycle in which its cell runs anyway,
-/// so the cycles do not depend on how often the cell is woken besides.
+/// A wait: its first cycle and its cause. A cause only changes in a cycle in which the cell runs in any case,
+/// so the counts do not depend on additional wakes.
 struct Wait {
-    Cycle since : 56;  ///< one word with the cause: every message and every side of a cell has a wait
+    Cycle since : 56;  ///< shares a word with the cause: every message and every side of a cell has a Wait
     Stall cause : 8;
     constexpr Wait(Cycle cycle = 0, Stall why = Stall::none) : since(cycle), cause(why) {}
 };
 static_assert(sizeof(Wait) == sizeof(std::uint64_t));
 
-/// Cycles by cause, of which `none` is none.
+/// Cycles by cause; `none` has no entry.
 class StallCycles {
   public:
     std::uint64_t& operator[](Stall cause) { return cycles_[std::size_t(cause) - 1]; }
@@ -48,17 +47,17 @@ class StallCycles {
     std::array<std::uint64_t, stall_causes> cycles_{};
 };
 
-/// What a cell did, in precast and trace (loads: while loading). Sums: they do not depend on the order of
-/// cells. What every hop counts comes first, with the causes that most wait for: a line of memory.
+/// Counters of a cell over precast and trace (load_hops: over loading). They are sums, so the order of cells
+/// does not matter. The counters of every hop and the most frequent causes come first, in one cache line.
 struct CellStatistics {
     std::uint64_t ray_hops = 0;     ///< rays sent to neighbours
     std::uint64_t return_hops = 0;  ///< answers sent, and rays sent over the array's border
     std::uint64_t traversal_cycles = 0;
-    StallCycles stalls;           ///< over all that waited
+    StallCycles stalls;           ///< summed over all waits
     std::uint64_t load_hops = 0;  ///< load messages passed on
-    std::uint64_t postponed = 0;  ///< rays destroyed here for want of a slot
+    std::uint64_t postponed = 0;  ///< rays destroyed here for lack of a slot
     std::uint64_t shading_cycles = 0;
-    std::uint64_t slot_cycles = 0;  ///< over slots, of the cycles that each was taken
+    std::uint64_t slot_cycles = 0;  ///< summed over slots: cycles in which each was taken
 };
 
 }  // namespace raycell

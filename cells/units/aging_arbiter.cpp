@@ -27,8 +27,9 @@ void AgingArbiter::Look::add(Cycle since, Kind kind, std::size_t index, std::uin
 }
 
 std::vector<AgingArbiter::Overdue> AgingArbiter::Look::finish() {
-    // What comes later, or from behind what is not overdue in a buffer, is younger. (But for an answer behind
-    // a ray, which can be only where both have one buffer: new_head() sees to that.)
+    // A message that arrives later, or that stands in a buffer behind one that is not overdue, is younger.
+    // The exception is an answer behind a ray, possible only where both share a buffer: new_head() handles
+    // it.
     arbiter_.look_at_ = overdue_.empty() ? ((oldest_ + patience) / epoch + 1) * epoch : now_ + 1;
     std::sort(overdue_.begin(), overdue_.end(), [](const Overdue& a, const Overdue& b) {
         return std::tie(a.since, a.kind, a.index) < std::tie(b.since, b.kind, b.index);

@@ -12,16 +12,16 @@
 
 namespace raycell {
 
-/// Finds overdue messages and puts them in order. A message is overdue if it had waited for more than
-/// `patience` cycles when the current epoch began; overdue ones move before all others, oldest first. The
-/// cell looks for them at the start of each epoch in which there may be any, and in every step while there
-/// are some, so the result does not depend on how often the cell runs.
+/// Finds overdue messages and sorts them. A message is overdue if it had waited for more than `patience`
+/// cycles when the current epoch began. Overdue messages move before all others, oldest first. The cell looks
+/// for them at the start of each epoch in which there may be any, and in every step while there are some, so
+/// the result does not depend on how often the cell runs.
 class AgingArbiter {
   public:
     static constexpr Cycle patience = 65536;                      ///< starvation bound, cycles
-    static constexpr Cycle epoch = patience / 8;                  ///< ages are counted in these
-    static_assert(bits_for(patience + epoch + 1) == field::age);  // counted as a register
-    static constexpr std::uint32_t others = 1U << 11;  ///< a bit that stands for what was not looked at
+    static constexpr Cycle epoch = patience / 8;                  ///< unit of ages, cycles
+    static_assert(bits_for(patience + epoch + 1) == field::age);  // counted as a register of the cell
+    static constexpr std::uint32_t others = 1U << 11;             ///< stands for all that was not looked at
 
     enum class Kind : std::uint8_t { answer, reply, ray };
     struct Overdue {
@@ -30,37 +30,40 @@ class AgingArbiter {
         std::size_t index;  ///< the side of an answer, the place of a ray
     };
 
-    /// Whether the cell is to look for what is overdue in this step.
+    /// Whether the cell must look for overdue messages in this step.
     bool due(Cycle now) const { return now >= look_at_; }
-    /// Something new is at the head of a buffer, and may have waited for longer than anybody has.
+    /// A new message is at the head of a buffer; it may have waited longer than any other.
     void new_head(Cycle now);
-    /// The same of an answer, where something overdue is parked: it may be older than its epoch.
+    /// A new answer is at the head of a buffer. Matters only while an overdue message is parked: the answer
+    /// may be overdue too.
     void new_answer() {
         if (parked_) parked_ |= others;
     }
-    /// These, bits of the cell's, may move again: if any of them was overdue it is looked at once.
+    /// The messages of these bits (InputPorts) may move again: if one of them was overdue, the cell looks in
+    /// this cycle.
     void unparked(std::uint32_t bits, Cycle now);
 
-    /// One look at all that waits.
+    /// One look at all waiting messages.
     class Look {
       public:
         Look(AgingArbiter& arbiter, Cycle now);
-        /// Since when something has waited. `parked`: it can't move before its bit is unparked.
+        /// Adds a message that has waited since cycle `since`. `parked`: it can't move before its bit is
+        /// unparked.
         void add(Cycle since, Kind kind, std::size_t index, std::uint32_t bit = 0, bool parked = false);
-        /// What is overdue, oldest first. Decides when to look next.
+        /// Returns the overdue messages, oldest first, and decides when to look next.
         std::vector<Overdue> finish();
 
       private:
         AgingArbiter& arbiter_;
         Cycle now_;
-        Cycle began_;   ///< the epoch
-        Cycle oldest_;  ///< of what is not overdue
+        Cycle began_;   ///< first cycle of the epoch
+        Cycle oldest_;  ///< start of the oldest wait that is not overdue
         std::vector<Overdue> overdue_;
     };
 
   private:
     Cycle look_at_ = patience;
-    std::uint32_t parked_ = 0;  ///< bits of what was overdue and parked when it was looked for
+    std::uint32_t parked_ = 0;  ///< bits of messages that the last look found overdue and parked
 };
 
 }  // namespace raycell

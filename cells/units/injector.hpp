@@ -1,6 +1,6 @@
-// The injector: the register from which the cell's own rays go out, one at a time: the primary ray of its
-// pixel, sent again when it was postponed, or before tracing the precast rays of its voxels (design, section
-// 6).
+// The injector: the register from which the cell's own rays are sent, one at a time (design, section 6). In
+// phase trace this is the primary ray of its pixel, sent again if it was postponed; in phase precast, the
+// precast rays of its voxels.
 #pragma once
 
 #include <optional>
@@ -13,29 +13,29 @@ namespace raycell {
 
 class Injector {
   public:
-    /// Begins a phase; `traces`: the pixel's primary ray is to be sent.
+    /// Begins a phase; `traces`: the pixel's primary ray must be sent in it.
     void begin_phase(bool traces) {
         primary_to_send_ = traces;
         precast_next_ = 0;
     }
 
-    /// The own ray on its way out, null if the register is free.
+    /// The own ray that waits to leave; null if the register is free.
     RayPacket* ray() const { return ray_; }
     void load(RayPacket& packet) { ray_ = &packet; }
     void left() { ray_ = nullptr; }
 
-    /// Whether the primary ray is to be sent, for the first time or again, at once or later.
+    /// Whether the primary ray must still be sent, for the first time or again, now or later.
     bool primary_to_send() const { return primary_to_send_; }
-    /// Whether it may go now; else the cell is to run when it may.
+    /// Whether the primary ray may be sent now. If only later, asks for a step in that cycle.
     bool primary_due(Cycle now, Wakeup& wakeup) const;
-    /// The primary ray has gone: true the first time.
+    /// Notes that the primary ray was sent; true the first time.
     bool primary_sent();
     void primary_postponed(const MachineSettings& machine, std::uint64_t ray, Cycle now);
     void primary_answered() { primary_awaited_ = false; }
-    /// The pixel's intensity is still to come.
+    /// Whether the pixel's intensity is still missing or an own ray stands in the register.
     bool unfinished() const { return primary_to_send_ || primary_awaited_ || ray_; }
 
-    /// The next voxel and source of which a precast ray is to be sent; each pair comes once in a phase.
+    /// The voxel and the source of the next precast ray; each pair comes once in a phase.
     struct Precast {
         std::uint32_t voxel;
         std::size_t source;

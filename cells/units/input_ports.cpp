@@ -9,7 +9,7 @@ void InputPorts::elaborate(const BufferClasses& classes) {
         const bool horizontal = side % 2 == 0;
         for (int index = 0; index < classes.count; ++index) {
             std::uint32_t bits = classes.holds_answers(index) ? answer_bit(std::size_t(side)) : 0;
-            // What comes in at one side runs towards the other.
+            // A ray that comes in at one side runs towards the opposite side.
             if (classes.holds_rays(index) && classes.used(index, horizontal, opposite(Side(side)))) {
                 bits |= 1U << count_;
                 inputs_[count_++] = RayInput(Side(side), in->place(index));

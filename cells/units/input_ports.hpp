@@ -1,5 +1,5 @@
-// The input ports (paper, section 4.3): the buffers at the ends of the four links in, as the cell reads them,
-// and per buffer the register with what was decided about its oldest ray.
+// The input ports (paper, section 4.3): the buffers at the ends of the four input links, as the cell reads
+// them, and the waits of the oldest answers.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace raycell {
 
-/// Rays stand in buffers called ray inputs, numbered side by side and class by class. A message stays in its
-/// buffer until it goes on. Words of bits over what waits in a cell have a bit per ray input from 0, then one
-/// for the cell's own ray, and from `answer_bits` one per side with answers.
+/// Ray inputs are the buffers that hold rays, numbered by side, then by class. A message stays in its buffer
+/// until it moves on. A word of bits for the waiting messages of a cell has one bit per ray input from bit 0,
+/// then one for the cell's own ray, and one per side with answers from bit `answer_bits`.
 class InputPorts {
   public:
     static constexpr std::size_t most_ray_inputs = 8;
@@ -19,22 +19,23 @@ class InputPorts {
     void connect(Side side, Link& link) { links_[std::size_t(side)] = &link; }
     /// Null over a border without a link.
     Link* link(Side side) const { return links_[std::size_t(side)]; }
-    /// All links are connected: has each keep the bits of its buffers in its sink's word.
+    /// To be called once all links are connected: each link then keeps the bits of its buffers in its sink's
+    /// pending_.
     void elaborate(const BufferClasses& classes);
 
     // Rays.
     std::size_t ray_inputs() const { return count_; }
-    /// Bits of those ray inputs, in a word of all that is pending, that hold anything.
+    /// The bits of the ray inputs in the word `pending`.
     std::uint32_t with_rays(std::uint32_t pending) const { return pending & ((1U << count_) - 1); }
     /// The oldest message if it is a ray that has arrived, else null.
     RayPacket* ray(std::size_t input, Cycle now) const {
         const Message* message = link_of(input).head_at(inputs_[input].place, now);
         return message && message->kind == Message::Kind::ray ? message->ray : nullptr;
     }
-    /// Since when the oldest ray has been at the head of its buffer.
+    /// Cycle since which the oldest ray has been at the head of its buffer.
     Cycle head_since(std::size_t input) const { return link_of(input).head_since_at(inputs_[input].place); }
-    /// Reads the oldest ray out; returns the bits of pending that are to be cleared. `more`: whether others
-    /// stand behind it.
+    /// Removes the oldest ray; returns the bits to clear in pending_. Sets `more` if the buffer is not empty
+    /// now.
     std::uint32_t pop_ray(std::size_t input, Cycle now, bool& more) {
         Link& link = link_of(input);
         const std::uint32_t emptied = link.pop_at(inputs_[input].place, now);
@@ -61,7 +62,7 @@ class InputPorts {
     Wait& answer_wait(std::size_t side) { return answer_waits_[side]; }
     const std::array<Wait, side_count>& answer_waits() const { return answer_waits_; }
 
-    // Where a buffer stands: its side, its place in the link.
+    // Location of a buffer: its side and its place in the link.
     std::size_t side_of(std::size_t input) const { return std::size_t(inputs_[input].side); }
     std::uint8_t place_of(std::size_t input) const { return inputs_[input].place; }
     std::uint8_t answer_place(std::size_t side) const { return answer_places_[side]; }
@@ -78,7 +79,7 @@ class InputPorts {
     std::array<RayInput, most_ray_inputs> inputs_{};
     std::array<Link*, side_count> links_{};
     std::array<Wait, side_count> answer_waits_{};
-    std::array<std::uint8_t, side_count> answer_places_{};  ///< of answers' buffers in the links
+    std::array<std::uint8_t, side_count> answer_places_{};  ///< of the buffers of answers in their links
     std::uint8_t count_ = 0;
 };
 

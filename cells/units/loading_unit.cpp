@@ -19,7 +19,7 @@ bool LoadingUnit::ends_at(const LoadItem& item, int x, int width) {
 }
 
 void LoadingUnit::take(LoadItem& item, int x, CellStore& store, const Context& context) {
-    // What is broadcast is latched in hardware; the model keeps one copy for all cells.
+    // Hardware latches broadcast messages in every cell; the model keeps one copy for all cells.
     if (!makes_voxel(item, x)) return;
     store_voxel(store, item.span, context.settings, context.scene.frame.level(), context.arithmetic);
     if (item.span.last != x) advance(item.span, context.arithmetic);

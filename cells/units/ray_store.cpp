@@ -10,15 +10,15 @@ RayStore::RayStore(int capacity, int generations, Slots policy)
     }
 }
 
-/// Slots taken of those that are free for all.
+/// Number of slots in use among those free for all.
 int RayStore::borrowed() const {
     int sum = 0;
     for (int g = 0; g < groups_; ++g) sum += std::max(0, used_by(g) - 1);
     return sum;
 }
 
-/// The first group from `from` on up to which so many slots are taken that one for each deeper group is left;
-/// their number if there is none.
+/// The first group g >= `from` such that groups 0 to g have taken all slots but one for each deeper group;
+/// the number of groups if there is none.
 int RayStore::full_from(int from) const {
     int up_to = 0;
     for (int g = 0; g < groups_; ++g) {
@@ -31,7 +31,7 @@ int RayStore::full_from(int from) const {
 bool RayStore::has_room(int generation) const {
     if (used_ >= capacity_) return false;
     if (nested_) return full_from(group(generation)) == groups_;
-    // Where the reserved slot is taken: one of those free for all, if any is left.
+    // If the group's reserved slot is taken, it needs one of those free for all.
     return groups_ == 0 || used_by(group(generation)) == 0 || borrowed() < shared_;
 }
 

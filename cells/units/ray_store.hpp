@@ -12,7 +12,7 @@
 
 namespace raycell {
 
-/// A ray that hit, and what is still missing for its intensity.
+/// A ray that hit, and what its intensity still lacks.
 struct Slot {
     enum class State : std::uint8_t { empty, to_set_up, in_setup, waiting, in_shading, to_answer };
     State state = State::empty;
@@ -21,38 +21,38 @@ struct Slot {
     std::uint64_t to_ask = 0;   ///< sources whose shadow ray is still to be sent
     std::uint64_t awaited = 0;  ///< sources whose verdict is still to come (per-hit)
     std::uint64_t lit = 0;
-    bool send_child[2] = {false, false};   ///< reflected, refracted: to be sent (again)
-    bool await_child[2] = {false, false};  ///< answer still to come
+    bool send_child[2] = {false, false};   ///< reflected, refracted: must be sent, also again
+    bool await_child[2] = {false, false};  ///< its answer is still to come
     Retry retry[2];                        ///< after a postponement
     dvec3 colour[2] = {dvec3(0), dvec3(0)};
-    RayPacket* child = nullptr;  ///< on its way out of the cell, one at a time
+    RayPacket* child = nullptr;  ///< the child register: waits to leave the cell
     dvec3 result{0, 0, 0};
     Cycle since = 0;              ///< when the ray was accepted
-    Cycle changed = 0;            ///< when it came into its state
-    Wait wait;                    ///< for the shading unit or, with its answer, for a way out
-    std::uint32_t next_free = 0;  ///< of an empty slot: the one that became free before it
+    Cycle changed = 0;            ///< when it entered its state
+    Wait wait;                    ///< for the shading unit, or of its reply for a way out
+    std::uint32_t next_free = 0;  ///< in an empty slot: the slot that became free before it
 };
 
-/// Gives out slots. With `reserved`, each generation that may have to wait keeps one for itself and the rest
-/// is free for all; when M is smaller than their number, the deepest generations share the last (design,
-/// section 5). With `nested` a generation and those before it leave one for each deeper one together, and a
-/// deeper one may take all.
+/// Gives out slots (design, section 5). With `reserved`, each generation that may have to wait keeps one slot
+/// for itself and the rest is free for all; if M is smaller than the number of these generations, the deepest
+/// share the last slot. With `nested`, generations 0 to g together leave one slot for each deeper generation;
+/// the deepest may take all.
 class RayStore {
   public:
     RayStore(int capacity, int generations, Slots policy);
 
-    /// The index of a slot for a ray of this generation, or nothing.
+    /// Takes a slot for a ray of this generation; returns its index, or nothing if there is no room.
     std::optional<std::uint32_t> allocate(int generation);
     void release(std::uint32_t index, int generation);
     /// Whether allocate() would find a slot.
     bool has_room(int generation) const;
-    /// Whether a slot that a ray of generation `held` gives back lets one of generation `wanting` in, where
-    /// there is no room now; with `nested` perhaps only after others of the same kind.
+    /// Whether a ray of generation `wanting`, which has no room now, gets room when a ray of generation
+    /// `held` gives back its slot; with `nested` perhaps only after several such slots are given back.
     bool would_help(int held, int wanting) const;
 
     Slot& operator[](std::uint32_t index) { return slots_[index]; }
     const Slot& operator[](std::uint32_t index) const { return slots_[index]; }
-    /// Slots ever used: what a scan has to look at.
+    /// Number of slots ever used: a scan need not look further.
     std::uint32_t touched() const { return std::uint32_t(slots_.size()); }
     int used() const { return used_; }
     int capacity() const { return capacity_; }

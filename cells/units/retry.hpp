@@ -1,4 +1,4 @@
-// Retrying: when a ray that was postponed is sent again (paper, section 4.2).
+// When a postponed ray is sent again (paper, section 4.2).
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace raycell {
 
-/// A back-off that doubles with each attempt up to six times, with jitter: else rays that were refused
-/// together come back together.
+/// A back-off that doubles with each attempt, up to six times. Its jitter keeps rays that were refused
+/// together from coming back together.
 class Retry {
   public:
-    /// Cycles until the next attempt: backoff · 2^min(attempt, 6), and up to as much again by a hash of the
-    /// seed, the ray and the attempt.
+    /// Cycles until the next attempt: backoff · 2^min(attempt, 6), plus a jitter below that value, a hash of
+    /// the seed, the ray and the attempt.
     static Cycle backoff(const MachineSettings& machine, std::uint64_t ray, unsigned attempt);
 
     void postponed(const MachineSettings& machine, std::uint64_t ray, Cycle now);
-    Cycle at() const { return at_; }  ///< not before this cycle
+    Cycle at() const { return at_; }  ///< first cycle in which the ray may be sent again
     unsigned attempts() const { return attempts_; }
 
   private:
-    static constexpr std::uint8_t most_attempts = 250;  ///< counted, not allowed
+    static constexpr std::uint8_t most_attempts = 250;  ///< the count saturates here
     Cycle at_ = 0;
     std::uint8_t attempts_ = 0;
 };

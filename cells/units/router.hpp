@@ -1,4 +1,4 @@
-// The router: the four links out, and who waits for room behind them.
+// The router: the four output links, and the messages that wait for room behind them.
 #pragma once
 
 #include <array>
@@ -11,9 +11,10 @@ namespace raycell {
 class Router {
   public:
     void connect(Side side, Link& link) { links_[std::size_t(side)] = &link; }
-    /// Null over a border without a link.
+    /// Null at a border without a link.
     Link* link(Side side) const { return links_[std::size_t(side)]; }
-    /// All links are connected: each tells its source of room by the bit of its side.
+    /// To be called once all links are connected: each then reports new room to its source by the bit of its
+    /// side.
     void elaborate() {
         for (unsigned side = 0; side < side_count; ++side) {
             if (links_[side]) links_[side]->tell_room(1U << side);
@@ -26,9 +27,9 @@ class Router {
         return answer.home_y > y ? Side::south : Side::north;
     }
 
-    /// Whether a message of a class can start over a side now. If the wires are busy the cell is to run when
-    /// they are free. If there is no room, whoever asks with `bits` is parked: no credit, no use in asking
-    /// again before the link says that room was made.
+    /// Whether a message of a class can start over a side now. If the wires are busy, asks for a step when
+    /// they are free. If there is no room, the message with these `bits` is parked: it waits for a credit and
+    /// need not ask again before the link reports room.
     Link::Room ask(Side side, int index, std::uint32_t bits, Wakeup& wakeup) {
         Link& out = *links_[std::size_t(side)];
         if (out.can_send(index, wakeup.next)) return Link::Room::free;
@@ -39,10 +40,10 @@ class Router {
         }
         return room;
     }
-    /// Bits of what waits for room behind an output.
+    /// Bits of the parked messages.
     std::uint32_t parked() const { return parked_; }
-    /// Room was made behind the outputs whose bits are set: who is parked on them may ask again. Clears the
-    /// bits and returns those of whom it concerns; some may have left since.
+    /// Unparks the messages parked on the outputs whose bits are set in `room_made`, and clears these bits.
+    /// Returns the bits of the unparked messages; some of them may have left since they were parked.
     std::uint32_t unpark(std::uint32_t& room_made) {
         std::uint32_t unparked = 0;
         for (; room_made; room_made &= room_made - 1) {
@@ -56,7 +57,7 @@ class Router {
 
   private:
     std::uint32_t parked_ = 0;
-    std::array<std::uint16_t, side_count> parked_on_{};  ///< by output
+    std::array<std::uint16_t, side_count> parked_on_{};  ///< parked bits by output
     std::array<Link*, side_count> links_{};
 };
 

@@ -1,6 +1,6 @@
 // The shading unit (paper, sections 3.2 and 4.1): sets a hit up for its children, and shades it when all
-// their answers are there. It does one job at a time. Results are written when a job begins and show when its
-// time is over.
+// their answers have come. It does one job at a time. Results are written when a job begins but count only
+// when its time is over.
 #pragma once
 
 #include <optional>
@@ -15,32 +15,33 @@ class ShadingUnit {
   public:
     enum class Job : std::uint8_t {
         idle,
-        set_up,        ///< a slot: its point, its normal, which children it has
-        shade,         ///< a slot whose answers are all there
-        direct,        ///< both, for a hit that waits for no other ray and needs no slot
-        direct_answer  ///< the intensity of such a hit waits in the unit for its way out
+        set_up,        ///< of a slot: its point, its normal, which children it has
+        shade,         ///< of a slot that has all its answers
+        direct,        ///< set_up and shade, for a hit that waits for no other ray and needs no slot
+        direct_answer  ///< the reply of such a hit waits in the unit for its way out
     };
 
-    /// Whether a slot lacks nothing any more and can be shaded.
+    /// Whether a slot has all its answers and can be shaded.
     static bool complete(const Slot& slot, const CellStore& store, Shadows shadows);
     /// Whether any slot is complete.
     static bool any_complete(const RayStore& slots, const CellStore& store, Shadows shadows);
-    /// The next job: first what is complete, which frees a slot, then what is to be set up; the oldest first.
+    /// The next job: complete slots first, because shading frees a slot, then slots to set up; each oldest
+    /// first.
     struct Choice {
         Job job;
         std::uint32_t slot;
     };
     static std::optional<Choice> choose(const RayStore& slots, const CellStore& store, Shadows shadows);
 
-    // What the jobs do; each returns its cycles. (x, y): the cell.
+    // The jobs; each returns its cycles. (x, y): the cell.
     static std::uint32_t set_up(Slot& slot, const CellStore& store, const Context& context,
                                 const CostTable& costs, int x, int y);
     static std::uint32_t shade(Slot& slot, const CellStore& store, const Context& context,
                                const CostTable& costs);
     std::uint32_t direct(RayPacket& packet, const HitSetup& setup, const CellStore& store,
                          const Context& context, const CostTable& costs);
-    /// After its set-up: what the slot waits for. `asked`: sources of its voxel that others have asked
-    /// (memo).
+    /// Notes after the set-up what the slot waits for. `asked`: the sources of its voxel that were already
+    /// asked (memo).
     static void await(Slot& slot, Shadows shadows, std::uint64_t asked);
 
     void start(Job job, std::uint32_t slot, Cycle done) {
@@ -62,7 +63,7 @@ class ShadingUnit {
     Cycle done() const { return done_; }
     RayPacket* direct_ray() const { return packet_; }
     const dvec3& direct_result() const { return result_; }
-    Wait& direct_wait() { return wait_; }  ///< of the answer that stands in the unit
+    Wait& direct_wait() { return wait_; }  ///< of the reply that stands in the unit
     const Wait& direct_wait() const { return wait_; }
 
   private:

@@ -1,4 +1,4 @@
-// The deadlock detector that a chip could have: a time-out in each cell (design, section 5).
+// A deadlock detector that a chip could have: a time-out in each cell (design, section 5).
 #pragma once
 
 #include <array>
@@ -9,21 +9,21 @@
 
 namespace raycell {
 
-/// Counts the cycles in which a cell holds a message that can't move on while nothing else of it moves
-/// either; any movement starts it anew. With a time-out of T it gives alarm in the T-th. The model keeps the
-/// lengths of all such waits, so that one run tells of every T.
+/// Counts the cycles in which a cell holds a message that can't move while nothing else in the cell moves
+/// either; any movement restarts the count. A detector with time-out T raises an alarm in the T-th cycle. The
+/// model keeps the lengths of all such waits, so that one run gives the result for every T.
 class TimeOut {
   public:
-    /// Time-outs that are told apart: powers of two.
+    /// The time-outs are the powers of two from 2^least_log to 2^most_log cycles.
     static constexpr int least_log = 4;
     static constexpr int most_log = 20;
-    /// Waits by their length: of 2^least_log cycles and more, and so on.
+    /// Ended waits by length: entry i for 2^(least_log + i) cycles and more, below the next entry's length.
     struct Counts {
         std::array<std::uint32_t, most_log - least_log + 1> ended{};
     };
 
-    /// The end of a cycle in which the cell ran; between such cycles nothing changes. `counts` must outlive
-    /// it.
+    /// To be called at the end of each cycle in which the cell ran; between such cycles nothing changes.
+    /// `counts` must outlive this object.
     void step(bool moved, bool blocked, Cycle now, Pool<Counts>& counts) {
         if (since_ != never && (moved || !blocked)) {
             count(now - since_, counts);
@@ -31,14 +31,14 @@ class TimeOut {
         }
         if (blocked && since_ == never) since_ = now;
     }
-    /// Waits of 2^log cycles and more that came to an end: each would have been an alarm.
+    /// Number of ended waits of at least 2^log cycles: each would have been an alarm.
     std::uint64_t ended(int log) const {
         if (!ended_) return 0;
         std::uint64_t sum = 0;
         for (int i = log; i <= most_log; ++i) sum += ended_->ended[std::size_t(i - least_log)];
         return sum;
     }
-    /// Since when the cell waits; `never` if it doesn't.
+    /// First cycle of the current wait; `never` if the cell does not wait.
     Cycle since() const { return since_; }
 
   private:

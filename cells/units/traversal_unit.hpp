@@ -1,5 +1,5 @@
-// The traversal unit (paper, section 4.1): tests one ray at a time against the cell's voxels, and finds where
-// it goes on.
+// The traversal unit (paper, section 4.1): tests one ray at a time against the cell's voxels, and finds what
+// the ray needs next.
 #pragma once
 
 #include "cells/channels/message.hpp"
@@ -10,7 +10,7 @@ namespace raycell {
 
 class TraversalUnit {
   public:
-    /// What all tests of a cell have in common.
+    /// The inputs that all tests of a cell share.
     struct Setting {
         const CellStore& store;
         const DepthRuns& runs;
@@ -19,11 +19,11 @@ class TraversalUnit {
         int x;
         int y;
     };
-    /// What a ray's test finds, written into the packet at once though it shows only when the time is over.
-    /// Returns how many cycles it takes.
+    /// Tests a ray. Writes the result into the packet at once; it counts only when the test's time is over.
+    /// Returns the cycles of the test.
     static std::uint32_t test(RayPacket& packet, const Setting& setting, const CostTable& costs);
 
-    /// The ray at `place` is in test until cycle `done`.
+    /// Starts the test of the ray at `place`; it lasts until cycle `done`.
     void start(RayPacket& packet, std::uint32_t place, Cycle done) {
         packet.stage = RayPacket::Stage::in_test;
         packet_ = &packet;
@@ -31,7 +31,7 @@ class TraversalUnit {
         place_ = place;
         next_ = place + 1;
     }
-    /// Whether the test is over; then the ray is decided and the unit free.
+    /// If the test is over, marks the ray as decided, frees the unit and returns true.
     bool finish(Cycle now, Wakeup& wakeup) {
         if (now < done_) {
             wakeup.at(done_);
@@ -46,7 +46,7 @@ class TraversalUnit {
     const RayPacket* packet() const { return packet_; }  ///< null: the unit is free
     Cycle done() const { return done_; }
     std::uint32_t place() const { return place_; }  ///< of the ray in test, or tested last
-    /// Where to begin to look for the next ray: round robin over the places.
+    /// The place at which the round robin starts to look for the next ray.
     std::uint32_t next() const { return next_; }
 
   private:

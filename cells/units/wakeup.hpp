@@ -1,4 +1,4 @@
-// When a cell must run again of itself.
+// When a cell must run again without being woken.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace raycell {
 
-/// The earliest cycle in which any of a cell's units has something to do without being woken by a link.
+/// The earliest cycle in which a unit of the cell has work, without a wake by a link.
 struct Wakeup {
     Cycle next = never;
     void at(Cycle cycle) { next = std::min(next, cycle); }
