@@ -23,7 +23,7 @@ void Scheduler::schedule(Cycle cycle) {
         return;
     }
     scheduled_ = cycle;
-    if (without_kernel_ || meet_) return;  // what is run next is for the meeting to say
+    if (without_kernel_ || meet_) return;  // the meeting decides the next cycle
     notify(cycle);
 }
 
@@ -32,8 +32,8 @@ void Scheduler::notify(Cycle cycle) {
     next_.notify(sc_core::sc_time::from_value(period_.value() * (cycle - kernel_now_)));
 }
 
-/// The end of a cycle that is shared with others. Cycles in which nobody here has anything to do are run
-/// right here: they cost no more than the meeting.
+/// Ends a cycle that is shared with other ranks. Cycles in which no client here is woken are run in this
+/// loop: they cost no more than the meeting.
 void Scheduler::hold_meeting() {
     for (;;) {
         const Cycle next = meet_(meet_argument_, scheduled_);
@@ -92,7 +92,7 @@ void Scheduler::tick() {
         running_.insert(running_.end(), far->second.begin(), far->second.end());
         far_.erase(far);
     }
-    constexpr std::size_t ahead = 16;  // a client that has not run for a while is in no cache
+    constexpr std::size_t ahead = 16;  // clients; one that has not run for a while is in no cache
     for (std::size_t i = 0; i < running_.size(); ++i) {
         if (i + ahead < running_.size()) fetch_line(running_[i + ahead]);
         Client* client = running_[i];
@@ -103,7 +103,7 @@ void Scheduler::tick() {
     }
     const Cycle next = next_busy();
     if (next < scheduled_) schedule(next);
-    if (meet_) meeting_.notify(sc_core::SC_ZERO_TIME);  // once all that was activated has run
+    if (meet_) meeting_.notify(sc_core::SC_ZERO_TIME);  // after all activated processes have run
 }
 
 }  // namespace raycell

@@ -1,4 +1,4 @@
-// What a run costs whoever waits for it, apart from the machine's cycles.
+// The wall-clock time of a run, as opposed to the machine's cycles.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// What stands in a cell, in words: for reports of runs that stopped.
+// Describes in words the messages in a cell, for reports of runs that stopped.
 #include "cells/deadlock/cell_waits.hpp"
 
 namespace raycell {

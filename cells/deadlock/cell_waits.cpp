@@ -9,7 +9,7 @@ using Kind = WaitGraph::Kind;
 
 Cycle later(Cycle a, Cycle b) { return b == never ? a : std::max(a, b); }
 
-/// Builds one cell's part. `map` is the machine's.
+/// Builds one cell's part of the wait-for graph in the machine's `map`.
 class CellWaits {
   public:
     CellWaits(const Cell& cell, WaitMap& map) : cell_(cell), env_(cell.environment()), map_(map) {}
@@ -38,7 +38,7 @@ std::string CellWaits::buffer_name(Side from, int index) const {
 
 void CellWaits::add_places() {
     if (env_.phase == Phase::load) {
-        // Into a row's first cell leads the distributor's link.
+        // The link into a row's first cell is the distributor's.
         if (!cell_.load_input() || cell_.x() == 0) return;
         WaitGraph::Node node;
         node.x = cell_.x();
@@ -145,7 +145,8 @@ Wants CellWaits::wants_ray(const RayPacket& packet) const {
     return Wants::nothing("nothing: it ends");
 }
 
-/// All that a waiting slot still lacks; what is between places (a back-off) comes by itself.
+/// All that a waiting slot still lacks. A child that stands nowhere (in its back-off) adds no edge: it comes
+/// by itself.
 Wants CellWaits::wants_children(std::uint32_t index) const {
     const Slot& slot = cell_.ray_store()[index];
     Wants wants{false, true, {}, ""};
@@ -192,7 +193,7 @@ Wants CellWaits::wants_of_slot(std::uint32_t index) const {
     return Wants::nothing("the end of its shading");
 }
 
-/// A load message: the cases of Cell::step_load().
+/// What a load message waits for: the cases of pass_load().
 Wants CellWaits::wants_load() const {
     const Message head = cell_.load_input()->front(0);
     if (head.kind != Message::Kind::load) return Wants::nothing("its arrival");
@@ -241,7 +242,7 @@ void CellWaits::add_waits() {
 void add_buffer(WaitMap& map, const Link& link, int index, WaitGraph::Node node) {
     const int count = link.occupancy(index);
     if (count == 0) return;
-    // The last message to move into its place, or to become the first.
+    // The latest cycle in which a message came to its place or became the first.
     node.since = later(0, link.last_pop(index));
     for (int place = 0; place < count; ++place) {
         const Link::Held held = link.held(index, place);

@@ -1,6 +1,6 @@
 // What a cell's buffers, slots and units wait for: the cell's part of the wait-for graph, read from outside.
-// A ray's need is what the cell itself acts on (model/machine/need.hpp); what slots, answers and load
-// messages wait for is written here a second time: whoever changes when they move changes it here.
+// A ray's need is the one that the cell itself acts on (model/machine/need.hpp). The rules for slots, answers
+// and load messages are repeated here: a change of when they move must be made here too.
 #pragma once
 
 #include "cells/cell.hpp"
@@ -8,16 +8,16 @@
 
 namespace raycell {
 
-// All places of the array first, then what each waits for.
+// To be called in this order: add_places() for all cells of the array, then add_waits().
 void add_places(const Cell& cell, WaitMap& map);
 void add_waits(const Cell& cell, WaitMap& map);
 
-/// Adds the buffer of a class at the end of a link, if it holds anything.
+/// Adds the buffer of a class at the end of a link, if it holds a message.
 void add_buffer(WaitMap& map, const Link& link, int index, WaitGraph::Node node);
-/// What a message waits for that wants to go over a link.
+/// What a message that wants to go over a link waits for.
 Wants wants_buffer(const WaitMap& map, const Link& out, int index, const std::string& name);
 
-/// What stands in the cell, a line each: for reports of runs that stopped.
+/// The messages in the cell, one line each, for reports of runs that stopped.
 std::vector<std::string> describe_blocked(const Cell& cell);
 
 }  // namespace raycell

@@ -27,8 +27,8 @@ void WaitGraph::analyse() {
                                        [](const Node& node) { return node.state == State::tail; }));
 }
 
-/// From what moves by itself backwards: an OR node is live with its first live successor, an AND node with
-/// its last.
+/// Propagates from the nodes that move by themselves to their waiters: an OR node is live if one of its
+/// successors is, an AND node if all are.
 void WaitGraph::mark_live() {
     std::vector<std::vector<Index>> waiters(nodes_.size());
     std::vector<std::size_t> missing(nodes_.size());
@@ -54,8 +54,8 @@ void WaitGraph::mark_live() {
     }
 }
 
-/// Tarjan's strongly connected components of the dead nodes, without recursion; those that no edge leaves are
-/// knots.
+/// Finds the strongly connected components of the dead nodes (Tarjan, without recursion). A component is a
+/// knot if no edge leads from it to another dead node.
 void WaitGraph::find_knots() {
     constexpr Index none = ~Index(0);
     std::vector<Index> order(nodes_.size(), none);
@@ -128,7 +128,7 @@ void WaitGraph::find_knots() {
 }
 
 std::uint64_t WaitGraph::formed(const std::vector<Index>& knot) const {
-    return nodes_[knot.back()].since;  // its nodes are in that order
+    return nodes_[knot.back()].since;  // nodes of a knot are sorted by `since`
 }
 
 }  // namespace raycell

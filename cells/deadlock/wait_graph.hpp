@@ -1,12 +1,12 @@
 // The wait-for graph of a machine: what can't move until something else does (design, section 5).
 //
 // A node is a place of the machine that holds something: a buffer, a slot of a ray store, a child or own ray
-// on its way out, a shading unit, an exterior processor. It waits for one of several others (any slot that
-// becomes free will do: OR) or for all of them (a slot waits for all its children: AND). What can move by
-// itself, and what only waits for such, is live; the rest never moves again. Among the dead, a knot is a set
-// in which every node waits, directly or not, for every other and for nothing dead outside: the deadlock
-// itself. The other dead nodes only wait for a knot: its tails. An empty place is no node, so an idle cell
-// never counts.
+// in its register, a shading unit, an exterior processor, a stage. A node waits for one of several others
+// (OR: any slot that becomes free will do) or for all of them (AND: a slot waits for all its children). A
+// node is live if it can move by itself or if live nodes free it. All other nodes are dead: they never move
+// again. A knot is a set of dead nodes in which every node waits, directly or indirectly, for every other and
+// for no dead node outside: the deadlock itself. The other dead nodes are tails: they only wait for a knot.
+// An empty place is no node, so idle cells do not appear.
 #pragma once
 
 #include <cstddef>
@@ -29,11 +29,11 @@ class WaitGraph {
         int y = 0;
         int side = -1;      ///< of a buffer: the Side that its link comes from; -1: none
         std::string what;   ///< "input east ray_west", "slot 3", ...
-        std::string holds;  ///< "ray 17/4c2 of generation 1", "answer to ray ...": the message that waits
+        std::string holds;  ///< the message: "reflected ray 17/42 of generation 1", "answer 'lit' to ray ..."
         std::string wants;  ///< what it waits for, in words
-        std::uint64_t since = 0;  ///< cycle in which the last of what it holds came to where it is
-        bool moves = false;       ///< can go on by itself, now or after a while
-        bool all = false;         ///< waits for all of `waits_for`, not for any
+        std::uint64_t since = 0;  ///< latest cycle in which a message in it came to its place
+        bool moves = false;       ///< can move by itself, now or after some cycles
+        bool all = false;         ///< waits for all of `waits_for`, not for any one
         std::vector<Index> waits_for;
         State state = State::live;  ///< set by analyse()
     };
@@ -43,14 +43,14 @@ class WaitGraph {
     Node& operator[](Index index) { return nodes_[index]; }
     const std::vector<Node>& nodes() const { return nodes_; }
 
-    /// Sorts every node into live, tail and knot. A node that neither moves nor waits for anything counts as
-    /// dead: a graph that was built right has none.
+    /// Marks every node as live, tail or knot. A node that neither moves nor waits for anything counts as
+    /// dead; a correctly built graph has none.
     void analyse();
-    /// After analyse(): the knots, each a list of nodes, oldest first; the knot with the oldest node first.
+    /// After analyse(): the knots, the one with the oldest node first. Each is a list of nodes, oldest first.
     const std::vector<std::vector<Index>>& knots() const { return knots_; }
     std::size_t tails() const { return tails_; }
     bool deadlocked() const { return !knots_.empty(); }
-    /// Cycle from which on a knot stands: nothing in it has moved since.
+    /// Cycle since which a knot exists: nothing in it has moved since then.
     std::uint64_t formed(const std::vector<Index>& knot) const;
 
   private:

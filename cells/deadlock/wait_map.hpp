@@ -1,4 +1,4 @@
-// Builds a machine's wait-for graph: who holds what, and where every ray under way is.
+// Builds a machine's wait-for graph: what each place holds, and where every ray is.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace raycell {
 
-/// What something waits for: nodes, all or any of them, or nothing because it moves by itself.
+/// What a node waits for: other nodes, all or any of them, or nothing because it moves by itself.
 struct Wants {
     bool moves = false;
     bool all = false;
@@ -21,40 +21,42 @@ struct Wants {
     static Wants nothing(std::string why) { return {true, false, {}, std::move(why)}; }
 };
 
-/// First every place that holds something is added, with what it holds; then what each waits for.
+/// Maps places and rays to nodes. First all places that hold something are added, then what each of them
+/// waits for.
 class WaitMap {
   public:
     using Index = WaitGraph::Index;
 
     /// Adds the place `number` of `owner` (a link's class, a cell's slot, ...).
     Index add(const void* owner, std::uint32_t number, WaitGraph::Node node);
-    /// Nothing for a place that is empty.
+    /// The node of a place; nothing if the place is empty.
     std::optional<Index> find(const void* owner, WaitGraph::Kind kind, std::uint32_t number) const;
     void set(Index node, Wants wants);
 
-    /// A ray, or an answer on its way home, is at this node.
+    /// Notes that a ray, or the answer to it, is at this node.
     void place(const Ray& ray, Index node) {
         places_[key(ray.home_x, ray.home_y, ray.kind, ray.slot, ray.child)] = node;
     }
     void place(const Answer& answer, Index node) {
         places_[key(answer.home_x, answer.home_y, answer.ray_kind, answer.slot, answer.child)] = node;
     }
-    /// Where the ray is that this cell's slot (or voxel) sent as this child, or its answer.
+    /// The node of the ray that a slot (or voxel) of the home cell sent as this child, or of the ray's
+    /// answer.
     std::optional<Index> where(int home_x, int home_y, RayKind kind, std::uint32_t slot,
                                unsigned child) const;
 
     WaitGraph& graph() { return graph_; }
 
-    // For a machine that several ranks simulate: each writes the places of its own and reads the others'.
-    /// All places and what stands there.
+    // For a machine of several ranks: each rank writes its own places and reads those of the others.
+    /// Writes all places and what they hold.
     void write(ByteWriter& bytes) const;
-    /// Adds what another map wrote. Its places have no owners here.
+    /// Adds the places that another map wrote. They have no owners here.
     void read(ByteReader& bytes);
-    /// Makes a place known here as this owner's.
+    /// Gives a node an owner here.
     void name(const void* owner, WaitGraph::Kind kind, std::uint32_t number, Index node) {
         owners_[{owner, kind, number}] = node;
     }
-    /// What the places [first, end) wait for.
+    /// Writes what the places `first` to `end` - 1 wait for.
     void write_waits(ByteWriter& bytes, Index first, Index end) const;
     void read_waits(ByteReader& bytes);
 

@@ -90,7 +90,7 @@ void Array::make_link(int x, int y, Side side) {
     bind_in(to_x, to_y, opposite(side), link);
 }
 
-/// A link into cell (to_x, to_y); `side` is its source's.
+/// Makes a link into cell (to_x, to_y); `side` is the side of its source over which it leads.
 Link& Array::add_link(int to_x, int to_y, Side side) {
     Link& link = links_.emplace_back(environment_.scheduler, environment_.classes.count,
                                      environment_.machine.buffer_depth, environment_.classes.used_over(side));
@@ -103,8 +103,8 @@ void Array::stall(Link& link, int x, int y, Side side) const {
     environment_.stall(link, "cell_" + std::to_string(x) + "_" + std::to_string(y) + "." + name_of(side));
 }
 
-/// Row y and its neighbour `outwards`, another rank's: of each column the link to the south, then that to the
-/// north, on both sides of the cut.
+/// Makes the half links between row y and the row beyond it on side `outwards`, which is another rank's. Both
+/// ranks make, for each column, the southward link first, then the northward one.
 void Array::make_half_links(SplitLinks& split, int y, Side outwards) {
     for (int x = 0; x < environment_.width(); ++x) {
         if (outwards == Side::south) {
@@ -185,14 +185,15 @@ void Array::join_row(int y, Link& load) {
     }
 }
 
-/// A module's ports know their links only when elaboration ends, so it sees to its cell itself.
+/// Elaborates the cells in tiles. A module elaborates its own cell: its ports know their links only when
+/// elaboration ends.
 void Array::end_of_elaboration() {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         if (modules_.count(i) == 0 && sockets_.count(i) == 0) cells_[i].elaborate();
     }
 }
 
-/// Once loading is over: the depths of all cells' voxels side by side.
+/// After loading: puts the depth runs of all cells' voxels into one array.
 void Array::make_runs() {
     std::size_t count = 0;
     for (const Cell& cell : cells_) count += cell.store().voxels.size();
@@ -228,12 +229,12 @@ std::uint64_t Array::schedule_hash() const {
 }
 
 double Array::bytes(const Granularity& granularity, int width, int height, const BufferClasses& classes) {
-    // Links over the border, which a tile's array may not have, are counted.
+    // Links over the border are included, though an array may have none.
     double each = sizeof(Cell);
     for (int side = 0; side < side_count; ++side) {
         each += Link::bytes(classes.used_over(Side(side))) + sizeof(std::uint32_t);
     }
-    constexpr double module = 8.3e3;  // measured: ports, process and event of SystemC's
+    constexpr double module = 8.3e3;  // bytes, measured: SystemC's ports, process and event
     return each * width * height + module * double(granularity.modules(width, height));
 }
 

@@ -13,15 +13,14 @@
 
 namespace raycell {
 
-/// Who runs the cells: these are modules of their own, all others are in tiles. Nothing that a run tells
-/// depends on it.
+/// Which cells are modules of their own; all others are in tiles. No result of a run depends on it.
 struct Granularity {
     bool every_cell = false;
     std::vector<CellRange> detail;
-    /// Cells: one activation of SystemC's for so many squared. The larger, the longer the list of cells to
-    /// run in a cycle, and the farther ahead a tile can ask for memory.
+    /// Side of a tile, in cells; SystemC activates one process per tile. A larger tile has a longer list of
+    /// cells to run in a cycle, so it can prefetch farther ahead.
     int tile_side = 4096;
-    /// Cells of somebody else's, for those places where it makes one.
+    /// Makes a user's own cell modules, for the places where it returns one.
     CellFactory own_cells = {};
 
     bool is_module(int x, int y) const;
@@ -29,48 +28,48 @@ struct Granularity {
     std::size_t modules(int width, int height) const;
 };
 
-/// Of an array that several ranks share, each has its rows (Environment::share); a cell's place is the whole
-/// array's.
+/// The cells and links of an array. If several ranks share an array, each has its own rows
+/// (Environment::share); coordinates are always those of the whole array.
 class Array : public sc_core::sc_module {
   public:
     Array(sc_core::sc_module_name name, Environment& environment, const Granularity& granularity = {});
 
     Cell& cell(int x, int y) { return cells_[index(x, y)]; }
     const Cell& cell(int x, int y) const { return cells_[index(x, y)]; }
-    /// Row by row.
+    /// The cells, row by row.
     StableArray<Cell>& cells() { return cells_; }
     const StableArray<Cell>& cells() const { return cells_; }
-    /// Null for a cell in a tile.
+    /// The module of a cell; null for a cell in a tile.
     CellModule* module(int x, int y);
-    /// The module that somebody else put in the place of a cell, which then stands idle; null if none.
+    /// The user's own module in the place of a cell, which is then idle; null if there is none.
     CellSocket* socket(int x, int y);
-    /// Who is woken by the links of a place: its cell, or the module that stands there.
+    /// The client that the links of a place wake: its cell, or the user's module in its place.
     Client& client(int x, int y);
     std::size_t tiles() const { return tiles_.size(); }
-    /// For whoever runs the cells instead.
+    /// For code that runs the cells in place of their hosts.
     const Prefetch& prefetch() const { return prefetch_; }
 
     StableArray<Link>& links() { return links_; }
     const StableArray<Link>& links() const { return links_; }
-    /// Index into cells() of the cell that links()[link] leads to: where its buffers stand.
+    /// Index into cells() of the sink of links()[link], the cell that has its buffers.
     std::size_t sink_of(std::size_t link) const { return ways_[link] / side_count; }
-    /// The side of its source over which links()[link] leads.
+    /// The side over which links()[link] leaves its source.
     Side side_of(std::size_t link) const { return Side(ways_[link] % side_count); }
 
-    // Joins a cell to something outside; to be called before the simulation starts.
+    // Connect a cell to links from outside the array; to be called before the simulation starts.
     void join_border(int x, int y, Side side, Link& from_outside, Link& to_outside);
-    /// The row's first cell gets its load messages over this link.
+    /// Sets the link on which the first cell of row y gets its load messages.
     void join_row(int y, Link& load);
 
-    /// Begins the environment's phase: every cell runs in the next cycle.
+    /// Begins the environment's phase: wakes every cell in the next cycle.
     void begin_phase();
-    /// Every cell runs in this cycle.
+    /// Wakes every cell in this cycle.
     void wake_all(Cycle cycle);
 
-    /// All cells' schedules, joined in the order of the cells.
+    /// The hash of the schedules of all cells, in the order of the cells.
     std::uint64_t schedule_hash() const;
 
-    /// Bytes that an array takes before anything is loaded or under way, as far as they grow with it.
+    /// Bytes of an array before loading, as far as they grow with its size.
     static double bytes(const Granularity& granularity, int width, int height, const BufferClasses& classes);
 
   private:

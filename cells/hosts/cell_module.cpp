@@ -14,7 +14,7 @@ CellModule::CellModule(sc_core::sc_module_name name, Environment& environment, i
     own_.reset(&cell_);
 }
 
-/// The link that the cell reads behind a port, null if nothing is bound to it.
+/// The link through which the cell reads a port; null if the port is not bound.
 Link* CellModule::link_of(Port<LinkIn>& port) {
     if (port.size() == 0) return nullptr;
     if (auto* link = dynamic_cast<Link*>(port[0])) return link;

@@ -1,5 +1,5 @@
-// A host: one sc_module with its own SC_METHOD and FIFO ports for one cell, for waveforms, probes and
-// exchange with a user's own module.
+// A host of one cell: an sc_module with its own SC_METHOD and FIFO ports, for waveforms, probes and exchange
+// with a user's own module.
 #pragma once
 
 #include <memory>
@@ -12,16 +12,16 @@
 
 namespace raycell {
 
-/// Its ports may be bound to any channels of their interfaces.
+/// The ports may be bound to any channels that implement their interfaces.
 class CellModule : public CellPorts, public CellHost {
   public:
     SC_HAS_PROCESS(CellModule);
-    /// Runs a cell of somebody else's, who must keep it.
+    /// Runs a cell of the caller's, which must outlive it.
     CellModule(sc_core::sc_module_name name, Environment& environment, Cell& cell);
     /// Runs a cell of its own.
     CellModule(sc_core::sc_module_name name, Environment& environment, int x, int y);
 
-    /// All that run in a cycle are woken before the first of them runs: time to ask for their memory.
+    /// All cells of a cycle are activated before the first of them runs, so their memory is prefetched here.
     void activate(Cell& cell) override {
         Prefetch::cell(&cell);
         Prefetch::links(cell);
@@ -39,10 +39,10 @@ class CellModule : public CellPorts, public CellHost {
     void ring() { wake_.notify(); }
 
     Environment& environment_;
-    std::unique_ptr<Cell> own_;  ///< null: somebody else's
+    std::unique_ptr<Cell> own_;  ///< null: the caller owns the cell
     Cell& cell_;
     sc_core::sc_event wake_;
-    std::vector<std::unique_ptr<InputRelay>> input_relays_;  ///< for channels that are no Links
+    std::vector<std::unique_ptr<InputRelay>> input_relays_;  ///< for channels other than Link
     std::vector<std::unique_ptr<Link>> output_relays_;
     std::vector<const sc_core::sc_event*> channel_events_;
 };

@@ -1,4 +1,4 @@
-// The ports of a cell, for modules that stand in an array.
+// The ports of a cell, for modules in an array.
 #pragma once
 
 #include <systemc>
@@ -7,7 +7,8 @@
 
 namespace raycell {
 
-/// Those over a border without a link may stay unbound. A module may be sensitive to its ports.
+/// The ports of a cell. Ports at a border without a link may stay unbound. A module may be sensitive to its
+/// ports.
 class CellPorts : public sc_core::sc_module {
   public:
     template <typename Interface>
@@ -20,10 +21,11 @@ class CellPorts : public sc_core::sc_module {
     sc_core::sc_vector<Port<LinkOut>> out;  ///< by Side
     Port<LinkIn> load_in;                   ///< from the row's distributor (first column only)
 
-    // What is bound to them; null over a border without a link.
+    // The channels bound to the ports; null at a border without a link.
     LinkIn* input(Side side) { return bound(in[std::size_t(side)]); }
     LinkOut* output(Side side) { return bound(out[std::size_t(side)]); }
-    /// The way in of load messages: west of the first column the distributor's.
+    /// The input of load messages: load_in in the first column, where the distributor is bound, else the west
+    /// input.
     LinkIn* load_input() { return load_in.size() > 0 ? load_in[0] : input(Side::west); }
 
   private:

@@ -1,4 +1,4 @@
-// A place in the array for a cell of somebody else's: the ports of a cell, and an event.
+// A place in the array for a user's own cell: the ports of a cell, and an event.
 #pragma once
 
 #include <functional>
@@ -10,18 +10,18 @@ namespace raycell {
 
 struct Environment;
 
-/// A module that stands in the array instead of one of its own cells. The array binds its ports. Its process
-/// is sensitive to woken() and runs one cycle at a time; for a cycle of its own choice it asks
-/// Scheduler::wake(*this, cycle). What it does with messages it must count in Environment::counters, as a
-/// Cell does: a run ends when every pixel is done.
+/// The base of a user's module that replaces one of the array's cells. The array binds its ports. Its process
+/// is sensitive to woken() and runs one cycle at a time; Scheduler::wake(*this, cycle) makes it run in a
+/// cycle of its choice. It must count its messages in Environment::meters.counters, as a Cell does: a run
+/// ends when every pixel is done.
 class CellSocket : public CellPorts, public Client {
   public:
     using CellPorts::CellPorts;
 
-    /// The environment's phase begins in the next cycle, in which the module is woken.
+    /// The environment's phase begins in the next cycle; the module is woken in it.
     virtual void begin_phase() {}
-    /// Notified in every cycle in which a message arrives, or in the cycle after room was made behind an
-    /// output that had refused one.
+    /// Notified in every cycle in which a message arrives, and in the cycle after room was made behind an
+    /// output that had refused a message.
     const sc_core::sc_event& woken() const { return woken_; }
     void activate() override { woken_.notify(); }
 
@@ -29,7 +29,7 @@ class CellSocket : public CellPorts, public Client {
     sc_core::sc_event woken_;
 };
 
-/// Makes the module for cell (x, y), or null where the array's own cell is to stand.
+/// Makes the module for cell (x, y); null where the array's own cell stays.
 using CellFactory = std::function<std::unique_ptr<CellSocket>(const char* name, Environment&, int x, int y)>;
 
 }  // namespace raycell

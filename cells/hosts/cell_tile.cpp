@@ -3,8 +3,8 @@
 namespace raycell {
 namespace {
 
-// A cell that has not run for a while is in no cache, and which cells run next is known. How many cells ahead
-// each part is asked for; each step reads what the one before it brought.
+// How many cells ahead each part of a cell is prefetched. A cell that has not run for a while is in no cache,
+// and the cells that run next are known. Each part reads what the part before it has brought.
 constexpr std::size_t cells_ahead = 16;
 constexpr std::size_t links_ahead = 12;
 constexpr std::size_t messages_ahead = 8;
@@ -16,8 +16,9 @@ void run_cells(const std::vector<Cell*>& cells, Environment& environment, const 
     Scheduler& scheduler = environment.scheduler;
     const Cycle now = scheduler.now();
     const std::size_t count = cells.size();
-    // Who runs in the next cycle is mostly known, and asked for behind the last of this one; the first ones
-    // are asked for before anything runs. Beyond the last there is none, so below zero, which wraps, neither.
+    // Most cells of the next cycle are already known: they are prefetched behind the last cell of this one.
+    // `i` starts below zero, so that the first cells are prefetched before any runs: it wraps to values
+    // beyond `count`, for which no cell is run.
     const std::vector<Client*>& next_cycle = scheduler.foreseen(now + 1);
     for (std::size_t i = 0 - cells_ahead; i != count; ++i) {
         if (i + cells_ahead < count) {

@@ -1,4 +1,4 @@
-// A host: one sc_module with one SC_METHOD for a block of cells, for scale.
+// A host of a block of cells: one sc_module with one SC_METHOD, for large arrays.
 #pragma once
 
 #include <systemc>
@@ -8,12 +8,12 @@
 
 namespace raycell {
 
-/// Runs the cells of a list, each once, in the scheduler's cycle, and wakes them for the next that they want.
-/// Asks for the memory of those farther down ahead.
+/// Runs each cell of a list once, in the scheduler's cycle, and enters the next cycle in which it must run.
+/// Prefetches the memory of cells farther down the list.
 void run_cells(const std::vector<Cell*>& cells, Environment& environment, const Prefetch& prefetch);
 
-/// Runs those of its cells that the scheduler's time wheel has woken; the others cost nothing. Its cells call
-/// their links directly, there are no ports.
+/// Runs those of its cells that the scheduler has woken; the others cost nothing. Its cells call their links
+/// directly, without ports.
 class CellTile : public sc_core::sc_module, public CellHost {
   public:
     SC_HAS_PROCESS(CellTile);
@@ -31,7 +31,7 @@ class CellTile : public sc_core::sc_module, public CellHost {
 
     Environment& environment_;
     const Prefetch& prefetch_;
-    std::vector<Cell*> active_;  ///< to run in this cycle
+    std::vector<Cell*> active_;  ///< cells to run in this cycle
     sc_core::sc_event wake_;
 };
 

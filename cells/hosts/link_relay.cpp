@@ -2,7 +2,7 @@
 
 namespace raycell {
 
-// Room for two: the next one at the head is put in while the one before it is taken out.
+// Depth 2: the next message is put in while the one before it is still being taken out.
 InputRelay::InputRelay(Scheduler& scheduler, int classes, LinkIn& channel)
     : channel_(channel), link_(scheduler, classes, 2) {
     link_.set_observer(this);

@@ -1,19 +1,19 @@
-// Joins a cell, which reads Links, to channels of somebody else's.
+// Connects a cell, which reads Links, to a user's own channels.
 #pragma once
 
 #include "cells/channels/link.hpp"
 
 namespace raycell {
 
-/// Shows a cell what stands at the heads of another channel's buffers, through a Link of its own: a message
-/// leaves the channel when the cell takes it.
+/// Shows a cell the heads of another channel's buffers through a Link of its own. A message leaves the
+/// channel when the cell takes it.
 class InputRelay : private LinkObserver {
   public:
-    /// `channel` must outlive it; of so many classes.
+    /// `channel`, which has `classes` classes, must outlive this object.
     InputRelay(Scheduler& scheduler, int classes, LinkIn& channel);
 
     Link& link() { return link_; }
-    /// Before each step of the cell: looks at the heads that have arrived since the last.
+    /// To be called before each step of the cell: takes over the heads that have arrived since the last step.
     void look();
 
   private:

@@ -17,7 +17,7 @@ Prefetch::Prefetch(const BufferClasses& classes, int width) {
 void Prefetch::cell(const void* client) {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
-    // What follows the first counters of the statistics is cold.
+    // Only the statistics' first counters are hot.
     constexpr std::size_t counters = offsetof(CellMeter, statistics_) + offsetof(CellStatistics, stalls);
     static_assert(offsetof(Cell, meter_) + counters <= hot_lines * line);
     static_assert(offsetof(Cell, store_) > hot_lines * line);
@@ -36,7 +36,7 @@ void Prefetch::buffer(const Link& link, std::size_t place) {
     if (place < Link::own_buffers) fetch_line(&link.buffers_[place]);
 }
 
-/// Who waits for the room that a message leaves behind in a buffer is woken.
+/// The sender to be woken, if one waits for the room that a message leaves in a buffer.
 void Prefetch::sender(const Cell& cell, std::size_t side, std::uint8_t place) const {
     const Link& in = *cell.inputs_.link(Side(side));
     if (!in.sender_waits_at(place)) return;
@@ -44,7 +44,7 @@ void Prefetch::sender(const Cell& cell, std::size_t side, std::uint8_t place) co
     neighbour(cell, Side(side));
 }
 
-/// The line that a message over a link touches in the cell at its other end.
+/// The cache line that a message over a link touches in the cell at the other end.
 void Prefetch::neighbour(const Cell& cell, Side side) const {
     fetch_line(reinterpret_cast<const char*>(&cell) + neighbours_[std::size_t(side)]);
 }
@@ -67,7 +67,7 @@ void Prefetch::links(const Cell& cell) {
         const auto side = std::size_t(__builtin_ctz(sides));
         buffer(*cell.inputs_.link(Side(side)), cell.inputs_.answer_place(side));
     }
-    // A ray will be tested: the depths that it is compared with.
+    // A ray will be tested: prefetches the depths with which it is compared.
     if (cell.occupied() & ~cell.decided_ & ~cell.bit_in_test()) {
         constexpr std::uint32_t most = 32;
         constexpr std::uint32_t in_line = line / sizeof(DepthRun);
@@ -84,7 +84,7 @@ void Prefetch::messages(const Cell& cell) const {
         if (!packet) continue;
         sender(cell, cell.inputs_.side_of(input), cell.inputs_.place_of(input));
         object(*packet);
-        // Synthetic traffic knows the cell by its voxel.
+        // Synthetic traffic reads the cell's voxel.
         if (cell.env_.context.traffic) fetch_line(cell.store_.voxels.data());
     }
     for (std::uint32_t sides = cell.answers_to_move(); sides; sides &= sides - 1) {

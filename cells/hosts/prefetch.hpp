@@ -1,4 +1,4 @@
-// Asking for memory ahead: in a large array a hop costs what the caches miss, not what it computes.
+// Prefetching: in a large array the cost of a hop is its cache misses, not its computation.
 #pragma once
 
 #include <array>
@@ -11,20 +11,20 @@
 namespace raycell {
 
 /// Prefetch hints for the next step of cells that lie row by row in memory; no side effects. A host that
-/// knows which cells run next calls the four parts in their order, some steps apart and ahead: each reads
-/// what the one before has brought.
+/// knows which cells run next calls the four functions in their order, some cells ahead and some cells apart:
+/// each reads what the one before has brought.
 class Prefetch {
   public:
     Prefetch(const BufferClasses& classes, int width);
 
-    /// What every step looks at, which comes first in a cell. Any client will do: a hint may name any
-    /// address.
+    /// The data that every step reads, which comes first in a cell. `client` need not be a cell: a hint may
+    /// name any address.
     static void cell(const void* client);
-    /// The buffers that it will read, and the depths that it will compare.
+    /// The buffers that the cell will read, and the depths that it will compare.
     static void links(const Cell& cell);
-    /// What stands at their heads, and who waits for the room behind it.
+    /// The messages at the heads of these buffers, and the senders that wait for their room.
     void messages(const Cell& cell) const;
-    /// Where these messages go.
+    /// The outputs to which these messages go.
     void outputs(const Cell& cell) const;
 
   private:
@@ -40,10 +40,11 @@ class Prefetch {
     void neighbour(const Cell& cell, Side side) const;
     void output(const Cell& cell, Side side, int index) const;
 
-    /// Place of a class's buffer in a link, by side of its source: read from here, not from the link.
+    /// Place of a class's buffer in a link, by the side of the link's source. Read from here, to spare an
+    /// access to the link.
     std::array<std::array<std::uint8_t, Link::most_classes>, side_count> places_{};
-    /// Bytes from a cell to its neighbour. Where the row above or below is another rank's, to some other
-    /// cell, and beyond the border to anything.
+    /// Bytes from a cell to its neighbour. If the neighbouring row is another rank's, this leads to some
+    /// other cell, and beyond the border to any address.
     std::array<std::ptrdiff_t, side_count> neighbours_;
 };
 

@@ -1,4 +1,4 @@
-// Values as bytes, for other processes of the same program on machines of the same kind.
+// Values as bytes, for other processes of the same program on computers of the same kind.
 #pragma once
 
 #include <cstddef>

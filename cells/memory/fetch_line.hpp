@@ -1,10 +1,10 @@
-// Asking for memory ahead.
+// Prefetching of cache lines.
 #pragma once
 
 namespace raycell {
 
-/// Asks for the line of memory at an address, which may be any. The empty piece of assembly keeps compilers
-/// from taking what only asks for memory for something that does nothing, and leaving out calls of it.
+/// Prefetches the cache line at an address; any address is allowed. The empty assembly statement keeps
+/// compilers from removing functions that only prefetch.
 inline void fetch_line(const void* address) {
     __builtin_prefetch(address, 1);
     asm volatile("");

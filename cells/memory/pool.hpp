@@ -1,4 +1,4 @@
-// Reuses objects: no allocation per message once a run is warm.
+// Reuses objects, so that a run that is warm allocates nothing per message.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace raycell {
 
-/// Hands out objects that stay where they are. Not for several threads.
+/// Hands out objects with stable addresses. Not thread-safe.
 template <typename T>
 class Pool {
   public:
@@ -24,11 +24,11 @@ class Pool {
     std::size_t in_use() const { return made_ - free_.size(); }
 
   private:
-    /// An object begins at a line of memory: what is asked for ahead is no more than its own.
+    /// Each object begins at a cache line, so that a prefetch brings no other object's bytes.
     struct alignas(64) Place {
         T object;
     };
-    static constexpr std::size_t block = StableArray<Place>::page / sizeof(Place);  // objects
+    static constexpr std::size_t block = StableArray<Place>::page / sizeof(Place);  // in objects
     T* make() {
         if (made_ % block == 0) {
             blocks_.push_back(std::make_unique<StableArray<Place>>());

@@ -1,4 +1,4 @@
-// Many large objects in a row that stay where they are: cells and links.
+// An array of many large objects with stable addresses: cells and links.
 #pragma once
 
 #include <sys/mman.h>
@@ -10,9 +10,9 @@
 
 namespace raycell {
 
-/// Room for a number of objects that is known in advance; they are made one by one. Aligned for huge pages
-/// and asks for them where there are any: neighbours in the array are far apart in memory, and looking pages
-/// up costs a tenth of a run. Room that is not used is not touched.
+/// Room for a number of objects known in advance, which are made one by one. The memory is aligned for huge
+/// pages and asks the system for them: neighbouring cells are far apart in memory, and page-table look-ups
+/// would cost a tenth of a run. Unused room is never touched.
 template <typename T>
 class StableArray {
   public:
@@ -24,15 +24,15 @@ class StableArray {
         if (objects_) ::operator delete(objects_, std::align_val_t(page));
     }
 
-    /// Once, before the first object. Throws std::bad_alloc.
+    /// To be called once, before the first object. Throws std::bad_alloc; std::logic_error on a second call.
     void reserve(std::size_t capacity) {
         if (objects_) throw std::logic_error("a stable array's room is given out once");
         const std::size_t bytes = (capacity * sizeof(T) + page - 1) / page * page;
         objects_ = static_cast<T*>(::operator new(bytes, std::align_val_t(page)));
         capacity_ = capacity;
-        madvise(objects_, bytes, MADV_HUGEPAGE);  // a wish: it may fail
+        madvise(objects_, bytes, MADV_HUGEPAGE);  // only a hint: it may fail
     }
-    /// Throws std::length_error when the room is used up.
+    /// Makes an object at the end. Throws std::length_error when the room is used up.
     template <typename... Arguments>
     T& emplace_back(Arguments&&... arguments) {
         if (size_ == capacity_) throw std::length_error("a stable array is full");

@@ -7,7 +7,7 @@
 namespace raycell {
 
 void join(Counters& sum, const Counters& other) {
-    // All but the last are sums of words, so that none can be forgotten here.
+    // Adds all words but the last, so that no new counter can be forgotten here.
     static_assert(std::is_trivially_copyable_v<Counters> && sizeof(Counters) % sizeof(std::uint64_t) == 0);
     constexpr std::size_t words = sizeof(Counters) / sizeof(std::uint64_t);
     static_assert(offsetof(Counters, last_progress) == (words - 1) * sizeof(std::uint64_t));

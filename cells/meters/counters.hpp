@@ -1,4 +1,4 @@
-// What a run counts.
+// The counters of a run.
 #pragma once
 
 #include "cells/clock/scheduler.hpp"
@@ -6,21 +6,21 @@
 
 namespace raycell {
 
-/// Counters of a run. Sums only: they do not depend on the order in which cells run.
+/// Counters of a run: sums and, last, one maximum, so they do not depend on the order in which cells run.
 struct Counters {
     RayCounts rays;
     std::uint64_t load_hops = 0;
-    std::uint64_t rays_sent = 0;       ///< put on their way, again after a postponement included
+    std::uint64_t rays_sent = 0;       ///< launched, also again after a postponement
     std::uint64_t rays_answered = 0;   ///< ended in an answer
     std::uint64_t rays_silent = 0;     ///< precast rays that reached their source
     std::uint64_t rays_destroyed = 0;  ///< postponed
     std::uint64_t answers_sent = 0;
     std::uint64_t answers_delivered = 0;
     std::uint64_t loads_sent = 0;       ///< spans and broadcast messages put into a row
-    std::uint64_t loads_delivered = 0;  ///< dropped behind their last cell
+    std::uint64_t loads_delivered = 0;  ///< of these, ended in their last cell
     std::uint64_t cells_loaded = 0;     ///< end-of-scene marks seen
     std::uint64_t pixels_done = 0;
-    std::uint64_t slots_used = 0;   ///< now, over all cells
+    std::uint64_t slots_used = 0;   ///< slots in use now, over all cells
     std::uint64_t slot_cycles = 0;  ///< sum over accepted rays of the cycles in the ray store
     std::uint64_t traversal_cycles = 0;
     std::uint64_t shading_cycles = 0;

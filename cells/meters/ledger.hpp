@@ -1,4 +1,4 @@
-// What recovery destroyed, when, where, and what that cost (paper, section 4.2: "destroy one or more
+// The rays that recovery destroyed: when, where, and at what cost (paper, section 4.2: "destroy one or more
 // sub-trees and ... postpone the corresponding computations").
 #pragma once
 
@@ -12,32 +12,32 @@ namespace raycell {
 
 class Ledger {
   public:
-    /// A ray that found no slot. Its own way was for nothing; what it would have spawned did not exist yet.
+    /// A ray that found no slot. Only its own way was wasted: it had no children yet.
     struct Entry {
-        std::uint64_t cycle = 0;     ///< in which it was destroyed
-        std::uint64_t launched = 0;  ///< in which its parent had sent it
+        std::uint64_t cycle = 0;     ///< cycle in which it was destroyed
+        std::uint64_t launched = 0;  ///< cycle in which its parent sent it
         std::uint64_t ray = 0;
-        std::uint32_t hops = 0;  ///< made since
+        std::uint32_t hops = 0;  ///< since its launch
         std::uint16_t x = 0;     ///< cell that had no slot
         std::uint16_t y = 0;
         std::uint16_t home_x = 0;  ///< cell that will send it again
         std::uint16_t home_y = 0;
         std::uint8_t generation = 0;
     };
-    /// Beyond so many, only the sums go on.
+    /// Further rays count only in the sums.
     static constexpr std::size_t most_entries = 1000000;
 
     void add(const RayPacket& packet, int x, int y, std::uint64_t cycle);
 
-    /// For another part of the same machine; add() keeps the earliest entries.
+    /// Passes a ledger to another rank of the same machine; add() merges it and keeps the earliest entries.
     void write(ByteWriter& bytes) const;
     void add(ByteReader& bytes);
 
     const std::vector<Entry>& entries() const { return entries_; }
     std::uint64_t destroyed() const { return destroyed_; }
-    /// Hops of the destroyed rays and of their notices' ways home.
+    /// Hops of the destroyed rays and of their postponed notices.
     std::uint64_t wasted_hops() const { return wasted_hops_; }
-    /// Cycles between sending and destroying, summed.
+    /// Sum of the cycles from sending to destruction.
     std::uint64_t wasted_cycles() const { return wasted_cycles_; }
     const std::vector<std::uint64_t>& by_generation() const { return by_generation_; }
 

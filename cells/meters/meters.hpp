@@ -1,4 +1,4 @@
-// What a run counts, and whom it tells: the one way out of an array's cells.
+// The counters and the observer of a run: all that the cells of an array report goes through them.
 #pragma once
 
 #include <vector>
@@ -10,32 +10,33 @@
 
 namespace raycell {
 
-/// Of an array.
+/// The meters of an array.
 struct Meters {
     Counters counters;
-    /// Per pixel, for Pixel::hops: apart from the picture, because every hop of a traced ray comes here and a
-    /// picture is larger than a cache.
+    /// Hops per pixel, for Pixel::hops. Kept apart from the picture, because every hop of a traced ray writes
+    /// here and a picture is larger than a cache.
     std::vector<std::uint32_t> pixel_hops;
     Ledger ledger;
-    CellObserver* observer = nullptr;  ///< told what every cell does; null: nobody
+    CellObserver* observer = nullptr;  ///< told of every cell's events; null: none
 };
 
-/// Of one cell: its statistics and the hash of its schedule. What it counts it counts for the array too.
+/// The meter of one cell: its statistics and the hash of its schedule. It adds to the array's counters too.
 class CellMeter {
   public:
     const CellStatistics& statistics() const { return statistics_; }
     std::uint64_t hash() const { return hash_.value(); }
-    /// What loading leaves, from a saved array.
+    /// Restores the state after loading, from a saved array.
     void restore(std::uint64_t hash, std::uint64_t load_hops) {
         hash_ = Fnv(hash);
         statistics_.load_hops = load_hops;
     }
 
-    /// Into the schedule's hash, over (cycle, event, detail); the array joins its cells' in their order.
+    /// Adds (cycle, event, detail) to the hash of the cell's schedule. The array joins the hashes in the
+    /// order of its cells.
     void note(Cycle now, CellEvent event, std::uint32_t detail) {
         for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(detail)}) hash_.add(word);
     }
-    /// A load message was taken; it `ends` here or goes on.
+    /// A load message was taken; it ends here (`ends`) or moves on.
     void loaded(Counters& all, LoadItem::Kind kind, bool ends, Cycle now) {
         if (kind == LoadItem::Kind::end_of_scene) {
             ++all.cells_loaded;
@@ -48,13 +49,13 @@ class CellMeter {
             ++statistics_.load_hops;
         }
     }
-    /// A ray's test began, which takes so many cycles.
+    /// A ray's test of `cycles` cycles began.
     void tested(Counters& all, const Visit& visit, std::uint32_t cycles) {
         all.rays.ties += visit.event == Visit::Event::hit && visit.hit.tied;
         all.traversal_cycles += cycles;
         statistics_.traversal_cycles += cycles;
     }
-    /// A ray left, to a neighbour or over the array's border, whose link is counted with its way back.
+    /// A ray left, to a neighbour or over the array's border. A hop over the border counts as a return hop.
     void ray_left(Counters& all, bool over_border) {
         if (over_border) {
             ++all.rays.exterior;
@@ -69,7 +70,7 @@ class CellMeter {
         ++all.rays.return_hops;
         ++statistics_.return_hops;
     }
-    /// An answer is home.
+    /// An answer has come home.
     void delivered(Counters& all, Answer::Kind kind, Cycle now) {
         ++all.answers_delivered;
         if (kind != Answer::Kind::postponed) all.last_progress = now;
@@ -87,7 +88,7 @@ class CellMeter {
         all.shading_cycles += cycles;
         statistics_.shading_cycles += cycles;
     }
-    /// A slot is free again, after so many cycles.
+    /// A slot is free again after it was taken for `cycles` cycles.
     void slot_left(Counters& all, Cycle cycles) {
         all.slot_cycles += cycles;
         statistics_.slot_cycles += cycles;

@@ -1,4 +1,4 @@
-// Several watchers of one run.
+// Several observers of one run.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace raycell {
 
-/// Tells everything to all of its members, in the order in which they were added.
+/// Passes every event to all its members, in the order in which they were added.
 class CellObserverList : public CellObserver {
   public:
     /// `observer` must outlive the run.

@@ -28,7 +28,7 @@ Stall stall_of_output(Link::Room room) {
 Stall CellView::stall_of(const RayPacket& packet) const {
     if (packet.stage == RayPacket::Stage::in_test) return Stall::none;
     if (packet.stage == RayPacket::Stage::untested) return Stall::traversal;
-    // Only where the answer goes matters here.
+    // Only the answer's way matters here, not its kind.
     const auto answer = [&] { return stall_of_answer(answer_to(packet.ray, Answer::Kind::intensity)); };
     switch (packet.need.kind) {
         case Need::Kind::output:
@@ -38,7 +38,7 @@ Stall CellView::stall_of(const RayPacket& packet) const {
         case Need::Kind::shading_unit:
             return !cell_.shading().idle() || cell_.slot_complete() ? Stall::shading : Stall::none;
         case Need::Kind::slot:
-            // Slots are only taken through the port: a ray that the port held back had one, if there is one.
+            // Slots are taken only through the port: if there is a slot, a waiting ray waits for the port.
             if (!cell_.ray_store().has_room(packet.ray.generation))
                 return env_.machine.recovery == Recovery::none ? Stall::no_slot : answer();
             return cell_.port_used(now_) ? Stall::store_port : Stall::none;

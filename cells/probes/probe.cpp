@@ -14,7 +14,8 @@ constexpr const char* state_names[] = {"idle", "busy", "blocked"};
 constexpr const char* operation_names[] = {"none",  "walk",   "compare",    "set_up",
                                            "shade", "direct", "make_voxel", "pass_on"};
 constexpr const char* slot_names[] = {"empty", "to_set_up", "in_setup", "waiting", "in_shading", "to_answer"};
-// In the order of RayKind, Answer::Kind and LoadItem::Kind, behind two of their own.
+// Two names for empty buffers and messages on the wires, then the names of RayKind, Answer::Kind and
+// LoadItem::Kind, in their order.
 constexpr const char* type_names[] = {"none",    "on_wires",  "primary",     "reflected", "refracted",
                                       "shadow",  "memo",      "precast",     "intensity", "lit",
                                       "blocked", "postponed", "setup",       "features",  "polygon",
@@ -25,7 +26,7 @@ constexpr std::uint64_t first_ray = 2;
 constexpr std::uint64_t first_answer = 8;
 constexpr std::uint64_t first_load = 12;
 
-/// Of numbers up to `most`; a signal has one at least.
+/// Bits of a signal with numbers from 0 to `most`; at least 1.
 int bits_for_value(int most) { return std::max(bits_for(most + 1), 1); }
 
 struct Head {
@@ -112,7 +113,7 @@ void Probe::declare_side(CellSignals& cell, int side) {
     const bool horizontal = side % 2 == 0;
     vcd_.open_scope(name_of(Side(side)));
     for (int index = 0; index < classes.count; ++index) {
-        // What comes in at one side runs towards the other.
+        // A message that comes in at one side runs towards the opposite side.
         if (!classes.used(index, horizontal, opposite(Side(side)))) continue;
         declare_buffer(cell, *link, index, class_name(classes.networks, index));
     }
@@ -205,8 +206,8 @@ void Probe::sample_cell(CellSignals& signals, Cycle now) {
 void Probe::sample_all(Cycle now, bool everything) {
     vcd_.set(phase_, std::uint64_t(env_.phase));
     for (CellSignals& cell : cells_) {
-        // A cell changes when it runs, its buffers also when a neighbour sends and when what was sent comes
-        // to be seen. (Room at an output that the cell was told is full wakes it.)
+        // A cell changes when it runs. Its buffers also change when a neighbour sends and when a message
+        // becomes visible. (Room at an output that refused the cell wakes it.)
         const auto changed = [](const BufferSignals& buffer) {
             return buffer.on_wires || buffer.link->occupancy(buffer.index) != buffer.last_occupancy;
         };
@@ -230,7 +231,7 @@ void Probe::begin(Cycle cycle) {
 void Probe::sample(Cycle now) {
     if (done_) return;
     if (!begun_) {
-        // What stands now is what stands at the window's beginning if no cycle is run before that.
+        // The present state holds until the window begins if no cycle is run before that.
         const Cycle next = env_.scheduler.next();
         if (now < settings_.from && (next == never || next <= settings_.from)) return;
         begin(std::max(now, settings_.from));
@@ -255,8 +256,8 @@ void Probe::finish(Cycle last) {
 // ---- size
 // ----------------------------------------------------------------------------------------------------
 
-/// What the dump would come to at the pace so far, by the pixels that are complete or by the window's cycles,
-/// whichever is less; 0 if neither tells yet.
+/// The expected final size of the dump in bytes, extrapolated from the finished pixels or from the window's
+/// cycles, whichever gives less; 0 while neither is known.
 double Probe::expected_bytes(Cycle now) const {
     constexpr double least_share = 0.01;
     const double bytes = double(vcd_.bytes());
@@ -291,7 +292,7 @@ void Probe::look_at_size(Cycle now) {
     look_at_ = vcd_.bytes() + std::min(bytes_between_looks, settings_.limit / 16);
     const double bound = std::min(worth_a_warning, double(settings_.limit));
     const double expected = expected_bytes(now);
-    // Half of it: where nothing tells how much is still to come.
+    // Half the bound, for dumps whose final size can't be estimated.
     if (warned_ || (expected <= bound && double(vcd_.bytes()) <= bound / 2)) return;
     warned_ = true;
     std::string text = "the dump has " + megabytes(double(vcd_.bytes())) + " in cycle " + std::to_string(now);

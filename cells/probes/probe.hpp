@@ -1,4 +1,4 @@
-// Probes: what goes on in some cells, cycle by cycle, as waveforms.
+// Probes: waveforms of the signals of some cells, cycle by cycle.
 #pragma once
 
 #include <functional>
@@ -16,8 +16,8 @@ struct ProbeSettings {
     std::uint64_t limit = 1024000000;  ///< bytes of the dump
 };
 
-/// Watches cells of one environment and writes a dump of their signals (docs/use/probes.md has the list). The
-/// values at a cycle's time are those that stand at its end. Watching changes nothing in a run.
+/// Observes cells of one environment and writes a dump of their signals (docs/use/probes.md lists them). The
+/// values at a cycle's time are those at its end. A probe changes nothing in a run.
 class Probe {
   public:
     /// Cells without a connection on a side have no signals there. The cells must be elaborated before
@@ -25,15 +25,15 @@ class Probe {
     Probe(std::vector<const Cell*> cells, const Environment& environment, std::FILE* file,
           const ProbeSettings& settings, std::function<void(const std::string&)> warn);
 
-    /// For the scheduler's sampler; and once more after the last cycle.
+    /// To be called by the scheduler's sampler, and once more after the last cycle.
     void sample(Cycle now);
     /// The run is over after cycle `last`: ends the dump.
     void finish(Cycle last);
 
-    /// Whether the dump has any cycle: false where the window lies behind the run's end.
+    /// Whether the dump has any cycle; false if the window begins after the run's end.
     bool begun() const { return begun_; }
     std::uint64_t bytes() const { return vcd_.bytes(); }
-    /// Of GTKWave, see save_file.hpp.
+    /// The text of GTKWave's save file (save_file.hpp).
     std::string save_file(const std::string& name) const;
 
   private:
@@ -42,7 +42,7 @@ class Probe {
         const Link* link;
         int index;
         int last_occupancy;
-        bool on_wires = false;  ///< all that it held then: it will be seen without anybody running
+        bool on_wires = false;  ///< held only unseen messages: the first appears without a step
         Signal full, occupancy, type, ray, stall;
     };
     struct UnitSignals {
@@ -81,8 +81,8 @@ class Probe {
     VcdWriter vcd_;
     std::vector<CellSignals> cells_;
     Signal phase_ = 0;
-    std::uint64_t look_at_ = 0;      ///< bytes from which on the size is looked at again
-    std::uint64_t phase_bytes_ = 0;  ///< when the phase began
+    std::uint64_t look_at_ = 0;      ///< bytes of the dump at which its size is checked next
+    std::uint64_t phase_bytes_ = 0;  ///< bytes of the dump when the phase began
     Phase last_phase_ = Phase::load;
     bool warned_ = false;
     bool declared_ = false;
@@ -90,7 +90,7 @@ class Probe {
     bool done_ = false;
 };
 
-/// A period in whole picoseconds, as waveforms have it.
+/// A period in whole picoseconds, the unit of the waveforms.
 std::uint64_t picoseconds(const sc_core::sc_time& period);
 
 }  // namespace raycell

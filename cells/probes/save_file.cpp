@@ -6,7 +6,7 @@
 namespace raycell {
 namespace {
 
-// Flags of a line, as GTKWave's analyzer.h has them.
+// Flags of a line, from GTKWave's analyzer.h.
 constexpr unsigned decimal = 0x4;
 constexpr unsigned binary = 0x8;
 constexpr unsigned right = 0x20;
@@ -56,7 +56,7 @@ class Writer {
         }
         scopes_.pop_back();
     }
-    /// Whether the group at hand is of those that one opens oneself.
+    /// Whether the current group is closed at first: the user opens it.
     bool shut() const { return groups_ > 1 && scopes_.size() == 2; }
 
     void signal(const VcdWriter::Declaration& d) {

@@ -1,4 +1,4 @@
-// GTKWave's save file beside a dump: groups as the dump's scopes, a radix for each signal.
+// GTKWave's save file for a dump: a group for each scope, a radix for each signal.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace raycell {
 
-/// `name`: the dump's file without folder and ending, the save file's too. Scopes below the first one are
-/// groups; in the first group all is open, of the others one sees the name until one opens them. The view
-/// begins at `from` and shows some hundred cycles of `cycle` each, both in the unit that viewers count in.
+/// Returns the text of the save file. `name` is the name of the dump and of the save file, without folder and
+/// extension. Scopes below the root are groups; the first group is open, the others are closed. The view
+/// begins at `from` and shows some hundred cycles of length `cycle`, both in the unit of viewers
+/// (VcdWriter::display_time()).
 std::string gtkwave_save_file(const std::vector<VcdWriter::Declaration>& declarations,
                               const std::string& name, std::uint64_t from, std::uint64_t cycle);
 

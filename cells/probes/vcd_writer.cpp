@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t flush_at = 1 << 16;
 constexpr std::uint64_t room_for_the_end = 200;  ///< bytes: comment and last time
 
-/// Short names of printable characters, as the format has them.
+/// The format's identifier code of a signal: short, of printable characters.
 std::string code_of(std::size_t number) {
     constexpr std::size_t first = 33;
     constexpr std::size_t count = 94;
@@ -34,7 +34,7 @@ void append_binary(std::string& text, std::uint64_t number) {
 
 VcdWriter::VcdWriter(std::FILE* file, std::uint64_t period_ps, std::uint64_t limit)
     : file_(file), limit_(limit), units_per_cycle_(period_ps) {
-    // The coarsest unit that the period is a multiple of: 1, 10 or 100 of ps, ns, us, ms.
+    // The coarsest unit that divides the period: 1, 10 or 100 of ps, ns, us or ms.
     constexpr const char* units[] = {"ps", "ns", "us", "ms"};
     int power = 0;
     while (units_per_cycle_ > 0 && units_per_cycle_ % 10 == 0 && power < 11) {
@@ -91,7 +91,8 @@ void VcdWriter::header() {
             continue;
         }
         const std::string& code = values_[signal++].code;
-        // Words are GTKWave's and others' extension of the format; numbers would need a table beside them.
+        // Strings are an extension of the format, read by GTKWave and others; numbers would need a table of
+        // names.
         const bool word = d.kind == Declaration::Kind::word || d.kind == Declaration::Kind::ray;
         buffer_ += std::string("$var ") + (word ? "string" : "wire") + " " + std::to_string(d.bits) + " " +
                    code + " " + d.name;

@@ -1,8 +1,8 @@
 // Writes value change dumps (VCD, IEEE 1364-2005, section 18).
 //
-// Not SystemC's own sc_trace: that compares every traced value in every delta cycle from elaboration to the
-// end of the simulation, can't be told to begin late or to stop, and knows no words. Probes know when a cell
-// may have changed, and want windows and a limit of the file's size.
+// SystemC's sc_trace is not used: it compares every traced value in every delta cycle from elaboration to the
+// end of the simulation, can't begin late or stop, and has no string values. Probes know when a cell may have
+// changed, and need windows and a limit on the file's size.
 #pragma once
 
 #include <cstdio>
@@ -13,13 +13,13 @@
 
 namespace raycell {
 
-/// Declarations first: scopes and signals; then begin(), then for each cycle at() and set().
+/// Order of calls: the declarations of scopes and signals, then begin(), then at() and set() for each cycle.
 class VcdWriter {
   public:
     using Signal = std::uint32_t;
     static constexpr std::uint64_t no_ray = ~std::uint64_t(0);
 
-    /// What has been declared, in order, for save files.
+    /// One declaration; kept in order for save files.
     struct Declaration {
         enum class Kind { scope, end_of_scope, flag, number, word, ray };
         Kind kind;
@@ -27,8 +27,8 @@ class VcdWriter {
         int bits = 1;
     };
 
-    /// `file` stays the caller's, who looks for errors (ferror) when he closes it. A cycle lasts `period_ps`
-    /// picoseconds. The file will have `limit` bytes at most, but for declarations that are longer alone.
+    /// `file` belongs to the caller, who must check for errors (ferror) on closing it. A cycle lasts
+    /// `period_ps` picoseconds. The file has at most `limit` bytes, unless the declarations alone are longer.
     VcdWriter(std::FILE* file, std::uint64_t period_ps, std::uint64_t limit);
 
     void open_scope(const std::string& name);
@@ -38,22 +38,23 @@ class VcdWriter {
     Signal add_number(const std::string& name, int bits);
     /// One of `words`, which must outlive the writer; the value is the index.
     Signal add_word(const std::string& name, const char* const* words);
-    /// A ray's id, written as reports do, pixel/branch; `no_ray` is "-".
+    /// A ray's id, written as in reports: pixel/branch; "-" for `no_ray`.
     Signal add_ray(const std::string& name);
 
-    /// Ends the declarations and writes what has been set so far as the values of this cycle.
+    /// Ends the declarations and writes the values set so far as those of this cycle.
     void begin(Cycle cycle);
-    /// What is set from now on belongs to this cycle; never earlier than the last.
+    /// Values set from now on belong to this cycle, which must not be earlier than the last.
     void at(Cycle cycle) { cycle_ = cycle; }
     void set(Signal signal, std::uint64_t value);
-    /// The last value holds until the beginning of this cycle.
+    /// Ends the dump: the last values hold until the beginning of this cycle.
     void end(Cycle cycle);
 
-    /// A cycle's time as viewers count it: in the whole unit, ps, ns, us or ms, of the time scale.
+    /// A cycle's time in the unit of viewers: the ps, ns, us or ms of the time scale, without its 10 or 100.
     std::uint64_t display_time(Cycle cycle) const { return cycle * units_per_cycle_ * units_shown_; }
 
     std::uint64_t bytes() const { return written_ + buffer_.size(); }
-    /// Whether the limit was reached: nothing is written any more. The last whole cycle is before at()'s.
+    /// Whether the limit was reached: nothing more is written. The last complete cycle is the one before
+    /// at()'s.
     bool stopped() const { return stopped_; }
     const std::vector<Declaration>& declarations() const { return declarations_; }
 
