@@ -5,7 +5,7 @@
 namespace raycell {
 namespace {
 
-/// Events counted so far.
+/// The events counted so far.
 Activity::Bucket events(const Counters& c) {
     Activity::Bucket all;
     all.hops = c.rays.ray_hops + c.rays.return_hops;
@@ -59,7 +59,7 @@ void ActivityRecorder::take_events(const Counters& counters) {
 void ActivityRecorder::close_bucket(const Counters& counters) {
     std::vector<Activity::Bucket>& buckets = activity_.buckets;
     if (buckets.size() == most_buckets) {
-        // Two become one; what is being filled goes on as the first half of a bucket of twice the width.
+        // Joins pairs of buckets. The current bucket becomes the first half of one of twice the width.
         for (std::size_t i = 0; i < most_buckets / 2; ++i) {
             buckets[i] = buckets[2 * i];
             buckets[i] += buckets[2 * i + 1];

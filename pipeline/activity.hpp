@@ -7,15 +7,15 @@
 
 namespace raycell {
 
-/// Bucket i covers the cycles [start + i · bucket_cycles, start + (i + 1) · bucket_cycles), the last one ends
+/// Bucket i covers the cycles [start + i · bucket_cycles, start + (i + 1) · bucket_cycles); the last one ends
 /// at `end`.
 struct Activity {
     struct Bucket {
-        // Sums over cycles; divided by the bucket's cycles, means.
+        // Levels, summed over cycles: divide by the bucket's cycles for the mean.
         std::uint64_t rays_in_flight = 0;     ///< in buffers, registers, units and the exterior
         std::uint64_t answers_in_flight = 0;  ///< on their way home
         std::uint64_t slots_used = 0;
-        // What happened in the bucket.
+        // Events in the bucket.
         std::uint64_t hops = 0;  ///< of rays and answers
         std::uint64_t load_hops = 0;
         std::uint64_t pixels_done = 0;
@@ -33,16 +33,16 @@ struct Activity {
     Cycle cycles_of(std::size_t index) const;
 };
 
-/// Fills an Activity from a run's counters. Starts with buckets of one cycle and doubles their width whenever
-/// there would be more than `most_buckets`, so nothing need be known of the run's length. The counters
-/// are sums over all cells, so the order in which cells run does not show.
+/// Fills an Activity from a run's counters. Buckets begin with one cycle and double their width whenever
+/// there would be more than `most_buckets`, so the run's length need not be known. The counters are sums over
+/// all cells, so the order in which cells run does not matter.
 class ActivityRecorder {
   public:
     static constexpr std::size_t most_buckets = 200;
 
-    /// From cycle `start` on. Without `levels`, only events are counted: no rays are on their way.
+    /// Begins to record at cycle `start`. Without `levels` only events are counted, for phases without rays.
     void begin(Cycle start, const Counters& counters, bool levels);
-    /// To be called before each cycle `now` that is run: until then all stands as the cycle before left it.
+    /// To be called before each cycle `now` that is run: the levels have held since the cycle run before.
     void observe(Cycle now, const Counters& counters) {
         while (now >= bucket_end_) close_bucket(counters);
         if (levels_) extend(now, counters);
@@ -67,7 +67,7 @@ class ActivityRecorder {
     Activity::Bucket current_;
     Activity::Bucket before_;  ///< events before the current bucket
     bool levels_ = true;
-    Cycle seen_ = 0;  ///< levels are summed up to this cycle
+    Cycle seen_ = 0;  ///< cycle up to which levels are summed
     Cycle bucket_end_ = 0;
 };
 

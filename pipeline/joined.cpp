@@ -28,8 +28,8 @@ std::vector<std::string> Joined::lines(std::vector<std::vector<RowLine>> section
     return texts;
 }
 
-/// Levels are differences of counters, each of which another rank may have counted: single ranks' are numbers
-/// modulo 2^64, their sum is the machine's.
+/// Levels are differences of counters, and other ranks may count a ray's end: a level of one rank is a number
+/// modulo 2^64, and only the sum over all ranks is a level of the machine.
 void Joined::join(Activity& activity) const {
     if (!ranks_) return;
     ByteWriter bytes;
@@ -43,11 +43,11 @@ void Joined::join(Activity& activity) const {
 
 std::uint64_t Joined::schedule_hash() const {
     if (!ranks_) return parts_.array.schedule_hash();
-    ByteWriter bytes;  // cells stand in the order of their rows
+    ByteWriter bytes;  // cells() is in the order of the rows
     for (const Cell& cell : parts_.array.cells()) bytes.put(cell.schedule_hash());
     Fnv whole;
     RankReaders readers(*ranks_, ranks_->gather(bytes.take()));
-    if (readers.empty()) return 0;  // rank 0 knows
+    if (readers.empty()) return 0;  // only rank 0 has it
     for (int y = 0; y < parts_.environment.height(); ++y) {
         ByteReader& row = readers.of_row(y);
         for (int x = 0; x < parts_.environment.width(); ++x) whole.add(row.get<std::uint64_t>());
@@ -66,8 +66,9 @@ void Joined::join(Ledger& ledger) const {
     }
 }
 
-/// Of its own rows a rank has what came home. Hops are counted, and first hits recorded, wherever they
-/// happen: by any rank for any pixel, a first hit by one alone.
+/// A rank has the final answers of the pixels of its own rows. Hops, postponements and first hits are
+/// recorded by the rank in which they happen, for pixels of any rank; a first hit is recorded by one rank
+/// only.
 Picture Joined::picture() const {
     const std::vector<std::uint32_t>& hops = parts_.environment.meters.pixel_hops;
     if (!ranks_) {

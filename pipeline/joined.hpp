@@ -1,4 +1,4 @@
-// How the results of several ranks become one. Without ranks everything is as it is.
+// Joins the results of several ranks. Without ranks the results stay as they are.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace raycell {
 
-/// All ranks call the same members in the same order.
+/// All ranks must call the same members in the same order.
 class Joined {
   public:
     explicit Joined(const MachineParts& parts) : parts_(parts), ranks_(parts.ranks) {}
 
-    /// Of all ranks: `mine` joined with the others' by `add(T&, const T&)`.
+    /// Joins `mine` with the values of the other ranks by `add(T&, const T&)`; all ranks get the result.
     template <typename T, typename Add>
     T of_all(T mine, Add add) const {
         if (!ranks_) return mine;
@@ -28,16 +28,16 @@ class Joined {
     std::uint64_t sum(std::uint64_t mine) const {
         return of_all(mine, [](std::uint64_t& a, std::uint64_t b) { a += b; });
     }
-    /// A line of a report, and the row of cells that it is about.
+    /// A line of a report and its row of cells.
     struct RowLine {
         int row;
         std::string text;
     };
-    /// Sections one after the other, of all ranks, each by rows.
+    /// The lines of all ranks, section by section; within a section sorted by row.
     std::vector<std::string> lines(std::vector<std::vector<RowLine>> sections) const;
     void join(Activity& activity) const;
 
-    // Rank 0 has them, the others nothing.
+    // Only rank 0 gets these results; the other ranks get empty ones.
     std::uint64_t schedule_hash() const;
     void join(Ledger& ledger) const;
     Picture picture() const;

@@ -1,6 +1,5 @@
-// What a machine is once it is loaded, apart from its voxels: so that a run that starts with a saved array
-// goes on in the same cycles, with the same schedule and the same figures of loading, as the one that saved
-// it.
+// The state of a loaded machine apart from its voxels. A run that starts with a saved array goes on in the
+// same cycles, with the same schedule and the same loading figures, as the run that saved it.
 #include "pipeline/loaded_state.hpp"
 
 #include <cmath>
@@ -10,7 +9,7 @@
 namespace raycell {
 namespace {
 
-/// Goes over the counts in one order, to note them down or to take them back.
+/// Visits the counts in a fixed order, to save or to restore them.
 class Counts {
   public:
     Counts(std::vector<std::uint64_t>& counts, bool taking) : counts_(counts), taking_(taking) {}
@@ -44,9 +43,10 @@ void visit_stage(Counts& counts, StageStatistics& stage) {
     counts.visit(stage.busy_cycles);
 }
 
-/// What must hold of a machine of so many cells at the end of its loading.
+/// Checks counts that must agree in a machine of `cells` cells at the end of loading. Throws
+/// std::runtime_error if they do not.
 void check_loading(const Counters& c, Cycle now, std::size_t cells, const RunResult& result) {
-    constexpr Cycle most = Cycle(1) << 62;  // far from the end of the numbers
+    constexpr Cycle most = Cycle(1) << 62;  // far below the largest Cycle
     const double mean = result.buffers.front().mean;
     const bool times = now <= most && result.load_cycles <= now && c.last_progress <= now;
     const bool messages = c.loads_sent == c.loads_delivered && c.cells_loaded == cells;
@@ -66,7 +66,7 @@ void visit_loading(MachineParts& parts, std::vector<std::uint64_t>& numbers, boo
     if (taking) {
         parts.geometry.restore(stages[0]);
         parts.precomputation.restore(stages[1]);
-        parts.distribution.row(0).restore(stages[2]);  // what counts is the sum
+        parts.distribution.row(0).restore(stages[2]);  // only the sum over rows matters
     }
     Counters& c = parts.environment.meters.counters;
     for (std::uint64_t* count :

@@ -1,4 +1,4 @@
-// A loaded machine, given to others or taken from them (model/files/array_file.hpp).
+// Saving and restoring a loaded machine (model/files/array_file.hpp).
 #pragma once
 
 #include <functional>
@@ -12,12 +12,13 @@ namespace raycell {
 /// Throws std::invalid_argument for an array of another scene, size or voxels.
 void expect_loaded_for(const MachineParts& parts, const LoadedArray& array);
 
-/// Hands the loaded array out. Its voxels are lent, not copied: they are most of what a loaded machine takes.
+/// Passes the loaded array to `to`. The voxels are lent during the call, not copied: they are most of a
+/// loaded machine's memory.
 void hand_over_loaded(MachineParts& parts, RunResult& result,
                       const std::function<void(const LoadedArray&)>& to);
 
-/// Goes on where the machine that the array is from had loaded it. Throws std::runtime_error for counts that
-/// can't be those of a loaded machine.
+/// Puts the machine into the state after the loading of `array`. Throws std::runtime_error for counts that no
+/// loaded machine can have.
 void start_loaded(MachineParts& parts, LoadedArray& array, RunResult& result);
 
 }  // namespace raycell

@@ -31,7 +31,7 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     const PictureSettings& settings = parts_.environment.context.settings;
     load(result);
     const auto going = [&] { return result.verdict == Verdict::completed; };
-    const Cycle next = going() ? 1 : 0;  // what never began does not begin after the run's end
+    const Cycle next = going() ? 1 : 0;  // no cycle follows a run that has ended
     activity_.begin(parts_.scheduler.now() + next, parts_.environment.meters.counters, true);
     furnish();
     if (settings.stage == RunStage::load) {
@@ -73,12 +73,12 @@ void Machine::load(RunResult& result) {
     activity_.finish(parts_.scheduler.now() + 1, parts_.environment.meters.counters);
     result.load_activity = activity_.activity();
     joined_.join(result.load_activity);
-    // Load messages use the buffers of class 0 while nobody else does; their figures are kept apart.
+    // Load messages use the buffers of class 0, at a time when no others do; their figures are kept apart.
     result.buffers.push_back(Results(parts_, joined_, totals_).buffer_use("load", 0, result.load_cycles));
     if (on_loaded_ && result.verdict == Verdict::completed) hand_over_loaded(parts_, result, on_loaded_);
 }
 
-/// What is to be there, and nothing more, when loading is over.
+/// Sets the state at the end of loading: fresh link statistics, synthetic voxels, shadow bits.
 void Machine::furnish() {
     const Context& context = parts_.environment.context;
     for (Link& link : parts_.array.links()) link.reset_statistics();
@@ -104,15 +104,16 @@ void Machine::run_phase(Phase phase, RunResult& result) {
         if (env.meters.observer) env.meters.observer->phase_begins(phase, env.phase_start + 1);
         parts_.array.begin_phase();
     }
-    // No free-running clock: this returns when nobody has anything to do any more.
+    // No free-running clock: sc_start() returns when no client has work any more.
     parts_.scheduler.begin();
-    // SystemC warns on standard output of a start without an event: where the limit allows no cycle more.
+    // Not called without an event, which happens when the limit allows no further cycle: SystemC would warn
+    // on standard output.
     if (parts_.ranks || parts_.scheduler.next() != never) sc_core::sc_start();
     parts_.scheduler.sample();
     totals_ = joined_.of_all(env.meters.counters, raycell::join);
     Judge judge(parts_, joined_, totals_);
     if (!judge.phase_complete()) judge.judge(interrupted_, result);
-    // A phase is over with its last message; what woke after that only found nothing to do.
+    // A phase ends with its last message; later wakes found no work.
     const bool completed = result.verdict == Verdict::completed;
     const Cycle end = completed ? std::max(totals_.last_progress, env.phase_start) : parts_.scheduler.now();
     const Cycle cycles = end - env.phase_start;
@@ -146,10 +147,10 @@ Cycle Machine::meet(void* self, Cycle) {
     return machine.parts_.ranks->meet(machine.progress(), machine.parts_.environment).next;
 }
 
-/// Before each cycle: whether it is to be run.
+/// Called before each cycle: whether the run goes on with it.
 bool Machine::goes_on(Cycle now) {
     const Environment& env = parts_.environment;
-    // What is decided here must be decided alike by all ranks: from what they have agreed upon.
+    // All ranks must decide alike here, so they use the progress that they have agreed on.
     const RankExchange* ranks = parts_.ranks;
     if (ranks ? ranks->agreed().interrupted != 0 : interrupt_ && *interrupt_) {
         interrupted_ = true;
@@ -163,7 +164,7 @@ bool Machine::goes_on(Cycle now) {
     if (env.phase == Phase::trace && destroyed > 0 && nothing_comes_home(idle)) {
         drain(now);
         if (now - drain_start_ > 1000 * slow_ray_) return false;
-    } else if (env.draining) {  // something did come home
+    } else if (env.draining) {  // an answer has come home
         drain_no_more(now);
     }
     constexpr std::uint64_t calls_between_reports = 4096;
@@ -171,7 +172,7 @@ bool Machine::goes_on(Cycle now) {
     return true;
 }
 
-/// With no new rays on their way, all that is not locked comes to rest.
+/// Holds back new rays, so that all that is not deadlocked comes to rest.
 void Machine::drain(Cycle now) {
     Environment& env = parts_.environment;
     if (!env.draining && env.meters.observer) env.meters.observer->draining(true, now);
@@ -187,9 +188,9 @@ void Machine::drain_no_more(Cycle now) {
     parts_.array.wake_all(now + 1);
 }
 
-/// Whether a run in which nothing has come home for `idle` cycles, though rays were sent again, has a knot or
-/// goes round in circles. A knot is looked for at idle times that double, so that looking costs little, and
-/// stands once it is there: such a run can't complete any more.
+/// Whether a run in which no answer has come home for `idle` cycles, though rays were sent again, has a knot
+/// or counts as a livelock. It looks for a knot at idle times that double, so that looking costs little. A
+/// knot stays for ever: such a run can't complete.
 bool Machine::nothing_comes_home(Cycle idle) {
     if (idle > 1000 * slow_ray_) return true;
     const Cycle first_look = first_look_.value_or(slow_ray_);
@@ -215,7 +216,8 @@ RankProgress Machine::progress() const {
     return mine;
 }
 
-/// The end-of-scene marks that count loaded cells come last, so they say nothing of how far loading is.
+/// The share of the phase's work that is done. Loading is measured by polygons: loaded cells are counted by
+/// the end-of-scene marks, which come last.
 double Machine::phase_share() const {
     const Counters& c = parts_.environment.meters.counters;
     const auto share = [](std::uint64_t done, std::uint64_t all) {
@@ -227,7 +229,7 @@ double Machine::phase_share() const {
         case Phase::precast:
             return share(c.rays_answered + c.rays_silent, precast_rays_);
         case Phase::trace:
-            return share(c.pixels_done, parts_.array.cells().size());  // of several ranks, this one's
+            return share(c.pixels_done, parts_.array.cells().size());  // of this rank
     }
     return 0;
 }

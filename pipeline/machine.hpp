@@ -24,34 +24,34 @@ struct RunProgress {
     std::uint64_t done;  ///< cells loaded or pixels complete
     std::uint64_t all;
     std::uint64_t hops;
-    double share;    ///< of the phase's work: polygons through the first stage, rays at their ends, pixels
+    double share;    ///< of the phase's work: polygons past the first stage, rays ended, or pixels
     double seconds;  ///< wall time since the phase began
 };
 
 class Machine : public sc_core::sc_module {
   public:
-    /// `tracer` may be null where nothing is handed to the exterior. With `traffic` what rays meet is drawn
-    /// (model/tracing/traffic.hpp). With `ranks` this is its rank's part of a machine that several processes
-    /// simulate; the scene's polygons and the tracer are needed by rank 0 alone. All arguments must outlive
-    /// the machine.
+    /// `tracer` may be null if no ray goes to the exterior. With `traffic` hits are drawn at random
+    /// (model/tracing/traffic.hpp). With `ranks` this is one rank's part of a machine that several processes
+    /// simulate; only rank 0 needs the scene's polygons and the tracer. All arguments must outlive the
+    /// machine.
     Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
             const MachineSettings& machine, const ExteriorTracer* tracer,
             const SyntheticTraffic* traffic = nullptr, const Granularity& granularity = {},
             RankExchange* ranks = nullptr);
 
-    /// Runs load, precast and trace to a verdict. Call once. Of several ranks, all have the whole machine's
-    /// result, but only rank 0 the whole picture and ledger; the others none.
+    /// Runs load, precast and trace to a verdict. Call once. With several ranks, each gets the whole
+    /// machine's result, but only rank 0 gets the picture, the ledger and the schedule hash.
     RunResult run(std::function<void(const RunProgress&)> progress = {});
 
-    /// While `flag` is not 0 the run ends before its next cycle, with the verdict `interrupted` and what
-    /// there is so far; for signal handlers. Null: nothing interrupts.
+    /// For signal handlers: once `flag` is not 0, the run ends before its next cycle with the verdict
+    /// `interrupted` and the results so far. Null: no interruption.
     void interrupt_by(const volatile std::sig_atomic_t* flag) { interrupt_ = flag; }
 
-    /// Instead of loading, starts with what another machine had loaded: its loading_key() must be this
-    /// one's. The schedule goes on from the cycle in which that one's loading ended. Not with random stalls,
-    /// whose draws go on. Throws std::invalid_argument for the array of another machine.
+    /// Starts with the loaded array of another machine instead of loading; its loading_key() must be equal.
+    /// The schedule goes on from the cycle in which the other machine's loading ended. Not for random stalls,
+    /// whose draws continue from loading. Throws std::invalid_argument for an array with another key.
     void use_loaded(LoadedArray array);
-    /// Called with the loaded array, once it is. Not after use_loaded().
+    /// `on_loaded` is called with the loaded array at the end of loading; not after use_loaded().
     void set_on_loaded(std::function<void(const LoadedArray&)> on_loaded) {
         on_loaded_ = std::move(on_loaded);
     }
@@ -59,7 +59,7 @@ class Machine : public sc_core::sc_module {
     Array& array() { return parts_.array; }
     Environment& environment() { return parts_.environment; }
 
-    // The loading pipeline before the array, for looking at it.
+    // The loading pipeline before the array, for observers.
     static constexpr int stage_link_depth = MachineParts::stage_link_depth;
     const Geometry& geometry() const { return parts_.geometry; }
     const Precomputation& precomputation() const { return parts_.precomputation; }
@@ -68,18 +68,18 @@ class Machine : public sc_core::sc_module {
     Link& trapeze_link() { return parts_.to_distribution; }
     const std::vector<std::unique_ptr<Link>>& row_links() const { return parts_.row_links; }
 
-    /// Cells, (x, y), in which something stands: those with the oldest messages first, `most` at most.
+    /// At most `most` cells (x, y) that hold messages or rays, those with the oldest messages first.
     std::vector<std::pair<int, int>> blocked_cells(std::size_t most) const {
         return raycell::blocked_cells(parts_.array, most);
     }
-    /// Cycles without any answer coming home after which postponing is called a livelock.
+    /// Cycles without an answer coming home after which a run that postpones rays counts as a livelock.
     Cycle livelock_window() const { return 1000 * parts_.slow_ray(); }
-    /// Cycles without any answer coming home after which a run in which rays are postponed is looked at for
-    /// knots, for the first time; by default those of a slow ray. `never`: only when it has ended.
+    /// Sets the cycles without an answer coming home after which a run that postpones rays is searched for
+    /// knots for the first time; the default is a slow ray's cycles. `never`: only at the end of the run.
     void look_for_knots_after(Cycle idle) { first_look_ = idle; }
 
-    /// What waits for what as the machine stands now; analysed. Of several ranks, all must call it, and all
-    /// have the whole graph.
+    /// The analysed wait-for graph of the machine's present state. With several ranks, all must call it; each
+    /// gets the whole graph.
     WaitGraph wait_graph() const { return MachineWaits(parts_).graph(); }
 
   private:
@@ -99,14 +99,14 @@ class Machine : public sc_core::sc_module {
 
     MachineParts parts_;
     Joined joined_;
-    Counters totals_;  ///< of the whole machine, when a phase has ended
+    Counters totals_;  ///< of the whole machine, at the end of the last phase
     ActivityRecorder activity_;
     std::function<void(const RunProgress&)> progress_;
     std::uint64_t watch_calls_ = 0;
     WallClock::time_point phase_began_;
     std::uint64_t precast_rays_ = 0;
-    Cycle slow_ray_ = 0;               ///< which goes through the whole cost table
-    std::optional<Cycle> first_look_;  ///< for knots, cycles after the last progress
+    Cycle slow_ray_ = 0;               ///< MachineParts::slow_ray(), which goes through the whole cost table
+    std::optional<Cycle> first_look_;  ///< for knots, in cycles after the last progress
     Cycle next_look_ = 0;
     bool knot_stands_ = false;
     Cycle drain_start_ = never;

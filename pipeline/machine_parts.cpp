@@ -68,15 +68,14 @@ void MachineParts::bind_rows() {
 }
 
 const Link& MachineParts::input_of_row(int y) const {
-    const std::size_t no_link = environment.share.rows().front() == 0;  // leads into row 0
+    const std::size_t no_link = environment.share.rows().front() == 0;  // no link leads into row 0
     return y == 0 ? to_distribution
                   : *distribution.links()[std::size_t(environment.share.place(y)) - no_link];
 }
 
 Cycle MachineParts::slow_ray() const {
-    // A ray and its answer may cross the array and visit the exterior, and
-    // each operation may be the dearest of the table, once per source.
-    // The longest back-off is 127 bases.
+    // A ray and its answer may cross the array and visit the exterior, and each operation may be the most
+    // expensive of the table, once per source. The longest back-off is below 128 times CostTable::backoff.
     const Environment& env = environment;
     Cycle dearest = 0;
     for (const auto& [name, member] : CostTable::entries())

@@ -1,4 +1,4 @@
-// What a machine is made of, and how it is joined.
+// The parts of a machine and the links between them.
 #pragma once
 
 #include <memory>
@@ -13,21 +13,21 @@
 
 namespace raycell {
 
-/// The stages before the array, the array, the exterior processors, and the links between them. Of several
-/// ranks, this one's part.
+/// The stages before the array, the array, the exterior processors, and the links between them. With several
+/// ranks, only this rank's part.
 struct MachineParts {
-    /// As Machine has them.
+    /// The arguments are those of Machine.
     MachineParts(const CellScene& scene, const PictureSettings& settings, const MachineSettings& machine,
                  const ExteriorTracer* tracer, const SyntheticTraffic* traffic,
                  const Granularity& granularity, RankExchange* other_ranks);
 
-    /// The link over which a row's distributor gets its load messages.
+    /// The input link of the distributor of row y.
     const Link& input_of_row(int y) const;
-    /// Cells of the whole array, all ranks'.
+    /// Number of cells of the whole array, over all ranks.
     std::uint64_t cell_count() const {
         return std::uint64_t(environment.width()) * std::uint64_t(environment.height());
     }
-    /// Cycles that a slow ray, its answer and its longest back-off take.
+    /// Cycles of a slow ray, its answer and its longest back-off.
     Cycle slow_ray() const;
 
     static constexpr int stage_link_depth = 4;  ///< messages between two stages before the array

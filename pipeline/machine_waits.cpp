@@ -15,7 +15,7 @@ WaitGraph MachineWaits::graph() const {
         add_waits(all, map);
         add_outside_waits(map);
     }
-    // What is still on its way, or at work, gets to where it is only later.
+    // Messages still on the wires and operations still going on have `since` in the future.
     for (WaitGraph::Index i = 0; i < map.graph().nodes().size(); ++i)
         map.graph()[i].since = std::min(map.graph()[i].since, parts_.scheduler.now());
     map.graph().analyse();
@@ -39,7 +39,7 @@ void MachineWaits::add_waits(const Band& band, WaitMap& map) const {
     }
 }
 
-/// Whether what stands before the array or beyond its border is here.
+/// Whether this rank has the places outside the array: the first stages (load) or the exterior.
 bool MachineWaits::has_outside() const {
     return parts_.environment.phase == Phase::load ? parts_.environment.share.contains(0)
                                                    : parts_.exterior != nullptr;
@@ -65,17 +65,17 @@ void MachineWaits::add_outside_waits(WaitMap& map) const {
     parts_.precomputation.add_waits(map, parts_.to_precomputation);
 }
 
-/// A buffer of a link whose source's half is another rank's: which place it is, by the band of its cell.
+/// A buffer of a half link whose source is another rank's, and its node, counted within a band.
 struct MachineWaits::FarBuffer {
-    int rank;  ///< that has the source's half
+    int rank;  ///< the rank that has the source's half
     std::uint32_t number;
     std::uint32_t index;
-    int band;               ///< no_band: a place of the exterior's
-    WaitGraph::Index node;  ///< counted from the first of the band
+    int band;               ///< of its cell; no_band: a place of the exterior
+    WaitGraph::Index node;  ///< counted from the band's first node
     static constexpr int no_band = -1;
 };
 
-/// Adds the buffers at this rank's ends of links whose places are in `map`.
+/// Appends to `far` the buffers in `map` of half links whose source is another rank's.
 void MachineWaits::add_far_buffers(const WaitMap& map, int band, std::vector<FarBuffer>& far) const {
     for (int rank = 0; rank < ranks_->count(); ++rank) {
         const SplitLinks* split = ranks_->links_to(rank);
@@ -90,9 +90,9 @@ void MachineWaits::add_far_buffers(const WaitMap& map, int band, std::vector<Far
     }
 }
 
-/// Places in the order in which one rank alone would have them, so that all numbers are the same. A source's
-/// half of a link knows the far end's place by the link's number. Returns where the places of each band
-/// begin, and those beyond the array's border.
+/// Adds the places of all ranks in the order of a machine without ranks, so that all numbers are equal on all
+/// ranks. The half link's number tells a source the node of its far end. Returns the first node of each band,
+/// then that of the places outside the array.
 std::vector<WaitGraph::Index> MachineWaits::put_places_together(WaitMap& map) const {
     std::vector<FarBuffer> far;
     ByteWriter places;
@@ -123,12 +123,12 @@ std::vector<WaitGraph::Index> MachineWaits::put_places_together(WaitMap& map) co
         WaitMap skipped;
         skipped.read(reader);
     }
-    const WaitGraph::Index outside_start = next();  // rank 0's, behind all cells'
+    const WaitGraph::Index outside_start = next();  // rank 0 has them; they follow all cells
     starts.push_back(outside_start);
     add_outside_places(map);
     int rank = 0;
     for (ByteReader& reader : readers) {
-        WaitMap skipped;  // of the other ranks nothing
+        WaitMap skipped;  // the other ranks have no places outside
         (rank == 0 && !has_outside() ? map : skipped).read(reader);
         for (const FarBuffer& buffer : reader.get_all<FarBuffer>()) {
             if (buffer.rank != ranks_->rank()) continue;
@@ -142,7 +142,7 @@ std::vector<WaitGraph::Index> MachineWaits::put_places_together(WaitMap& map) co
     return starts;
 }
 
-/// Then each rank says what its own places wait for.
+/// Adds all places, then what they wait for: each rank contributes its own places.
 void MachineWaits::put_together(WaitMap& map) const {
     const std::vector<WaitGraph::Index> starts = put_places_together(map);
     for (const Band& band : parts_.environment.share.bands()) add_waits(band, map);

@@ -1,4 +1,4 @@
-// The wait-for graph of a whole machine: of its cells, the stages before them and the exterior beyond them.
+// The wait-for graph of a whole machine: its cells, the stages before them and the exterior.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,8 @@ class MachineWaits {
   public:
     explicit MachineWaits(const MachineParts& parts) : parts_(parts), ranks_(parts.ranks) {}
 
-    /// What waits for what as the machine stands now; analysed. Of several ranks, all must call it, and all
-    /// have the whole graph.
+    /// The analysed wait-for graph of the machine's present state. With several ranks, all must call it; each
+    /// gets the whole graph.
     WaitGraph graph() const;
 
   private:

@@ -9,8 +9,7 @@ InFlight Results::in_flight() const {
     const MessagePools& pools = parts_.environment.pools;
     InFlight there;
     there.rays = pools.rays.in_use();
-    if (parts_.exterior)
-        there.rays += std::uint64_t(parts_.exterior->working());  // those left the pool when it took them
+    if (parts_.exterior) there.rays += std::uint64_t(parts_.exterior->working());  // no longer in the pool
     there.rays = joined_.sum(there.rays);
     there.answers = joined_.sum(pools.answers.in_use());
     there.upstream = parts_.geometry.holds() + std::uint64_t(parts_.to_precomputation.occupancy(0)) +
@@ -93,7 +92,7 @@ RunResult::BufferUse Results::buffer_use(const char* buffer_class, int index, Cy
         const Link::ClassStatistics s = link.statistics(index);
         sums.peak = std::max(sums.peak, s.peak);
         sums.occupied += s.occupied_cycles;
-        sums.buffers += s.sent > 0 ? 1 : 0;  // a class that a link never carries has no buffer there
+        sums.buffers += s.sent > 0 ? 1 : 0;  // buffers that no message used do not count
     }
     sums = joined_.of_all(sums, [](Sums& a, const Sums& b) {
         a.peak = std::max(a.peak, b.peak);

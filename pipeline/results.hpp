@@ -1,4 +1,4 @@
-// What a run has counted, once it has ended.
+// Collects the counts of a run at its end.
 #pragma once
 
 #include "pipeline/joined.hpp"
@@ -8,17 +8,19 @@ namespace raycell {
 
 class Results {
   public:
-    /// `totals`: what all ranks have counted.
+    /// `totals`: the counters summed over all ranks.
     Results(const MachineParts& parts, const Joined& joined, const Counters& totals)
         : parts_(parts), joined_(joined), totals_(totals) {}
 
-    /// Messages that are there now, counted where they stand.
+    /// The messages in the machine now, counted in their places.
     InFlight in_flight() const;
-    /// What was sent has come home or is still there, however the run ended; else throws std::logic_error.
+    /// Checks that every message sent has ended or is still in the machine, however the run ended; throws
+    /// std::logic_error if not. `completed`: none may be left.
     void check_conservation(const InFlight& there, bool completed) const;
-    /// All but verdict, cycles and what was measured phase by phase.
+    /// Fills in all results but the verdict, the cycles and the measurements of single phases.
     void collect(RunResult& result) const;
-    /// Peak and mean of one class over the array's links since their last reset.
+    /// Peak and mean occupancy of one buffer class over the array's links since their last reset; the mean is
+    /// over `cycles` cycles.
     RunResult::BufferUse buffer_use(const char* buffer_class, int index, Cycle cycles) const;
 
   private:

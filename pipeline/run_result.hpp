@@ -1,4 +1,4 @@
-// What a run tells.
+// The results of a run.
 #pragma once
 
 #include <string>
@@ -13,27 +13,28 @@
 
 namespace raycell {
 
-/// Whose loading a result tells of: its own, or that of the run that saved the array, which was an equal
-/// machine's or that of one with other buffers, links or costs.
+/// Source of the loading figures: this run, or the run that saved the array, on a machine with the same
+/// timing or with other buffers, links or costs.
 enum class LoadedBy { run, saved, saved_other_timing };
 
 enum class Verdict { completed, deadlock, livelock, cycle_limit, capacity, interrupted };
 const char* name_of(Verdict verdict);
 
-/// What a time-out of `cycles` in every cell would have told (cells/units/time_out.hpp), beside the proof.
+/// The alarms that a time-out of `cycles` cycles in every cell would have raised (cells/units/time_out.hpp),
+/// compared with the proof.
 struct TimeOutResult {
     Cycle cycles = 0;
-    std::uint64_t false_alarms = 0;  ///< in cells of which nothing locked: they moved again
-    std::uint64_t early_alarms = 0;  ///< in cells that locked later or in part, and that moved again
-    std::uint64_t knot_cells = 0;    ///< that hold a node of a knot ...
-    std::uint64_t knot_alarms = 0;   ///< ... and of them, those that give alarm and never move again
-    std::uint64_t missed_knots = 0;  ///< none of whose cells gives alarm for good
-    std::uint64_t tail_alarms = 0;   ///< cells that only wait for a knot, give alarm and never move again
+    std::uint64_t false_alarms = 0;  ///< in cells without a deadlock: they moved again
+    std::uint64_t early_alarms = 0;  ///< in cells that moved again but later deadlocked, also in part
+    std::uint64_t knot_cells = 0;    ///< cells that hold a node of a knot ...
+    std::uint64_t knot_alarms = 0;   ///< ... and those of them that raise an alarm and never move again
+    std::uint64_t missed_knots = 0;  ///< knots without a cell that raises a lasting alarm
+    std::uint64_t tail_alarms = 0;   ///< cells with tails only that raise an alarm and never move again
     std::int64_t first_alarm_delay =
-        0;  ///< cycles from the knot's forming to the first lasting alarm in one of its cells
+        0;  ///< cycles from the first knot to the first lasting alarm in a cell of a knot
 };
 
-/// Messages that are there when a run stops, counted where they stand. None if it completed.
+/// The messages in the machine when a run stops, counted in their places; none if it completed.
 struct InFlight {
     std::uint64_t rays = 0;  ///< in buffers, registers, slots, units and the exterior
     std::uint64_t answers = 0;
@@ -41,7 +42,7 @@ struct InFlight {
     std::uint64_t upstream = 0;  ///< load messages in the stages before the rows
 };
 
-/// What a run of either engine tells about itself. Cycles are 0 for the untimed one.
+/// The results of a run of either engine. Cycles are 0 for the untimed engine.
 struct RunResult {
     Verdict verdict = Verdict::completed;
     Picture picture;
@@ -60,26 +61,26 @@ struct RunResult {
     struct BufferUse {
         std::string name;
         int peak = 0;
-        double mean = 0;  ///< messages per buffer, over the buffers of the class and all cycles
+        double mean = 0;  ///< messages per buffer, over the class's used buffers and all cycles
     };
     std::vector<BufferUse> buffers;
-    std::vector<std::string> report;  ///< what was stuck where, oldest first
-    Cycle ended = 0;                  ///< cycle in which the run stopped
-    WaitGraph waits;  ///< of a run that did not complete, sorted into live, tails and knots; else empty
-    std::vector<std::pair<int, int>> knot_cells;  ///< (x, y) of the cells of the deadlock's knot
-    Cycle knot_formed = never;                    ///< cycle from which on the knot stood
-    Ledger ledger;                                ///< what was destroyed and postponed
+    std::vector<std::string> report;              ///< what is stuck and where, oldest first
+    Cycle ended = 0;                              ///< cycle in which the run stopped
+    WaitGraph waits;                              ///< analysed; empty if the run completed or was interrupted
+    std::vector<std::pair<int, int>> knot_cells;  ///< (x, y) of the cells of all knots
+    Cycle knot_formed = never;                    ///< cycle since which the first knot exists
+    Ledger ledger;                                ///< the rays destroyed and postponed
     std::vector<TimeOutResult> time_outs;
     Activity load_activity;
     Activity activity;          ///< of precast and trace
-    Cycle trace_start = never;  ///< cycle in which tracing began; before it, from activity.start on, precast
+    Cycle trace_start = never;  ///< first cycle of tracing; activity before it is precast
     LoadedBy loading = LoadedBy::run;
-    std::uint64_t precast_hops = 0;  ///< of all hops of rays and answers, those of the precast phase
+    std::uint64_t precast_hops = 0;  ///< hops of rays and answers in the precast phase
     std::uint64_t schedule_hash = 0;
     double wall_load = 0;  ///< seconds
     double wall_precast = 0;
     double wall_trace = 0;
-    double processor_load = 0;  ///< seconds of this process
+    double processor_load = 0;  ///< processor time of this process, in seconds
     double processor_precast = 0;
     double processor_trace = 0;
 };

@@ -1,4 +1,4 @@
-// What time-outs in every cell would have told, beside the proof.
+// The alarms that time-outs in every cell would have raised, compared with the proof.
 #include <algorithm>
 #include <array>
 
@@ -10,7 +10,7 @@ void Results::collect_time_outs(RunResult& result) const {
     const auto index = [&](int x, int y) {
         return std::size_t(y) * std::size_t(parts_.environment.width()) + std::size_t(x);
     };
-    // 2: holds a node of a knot; 1: one that waits for a knot.
+    // By cell. 2: it holds a node of a knot; 1: only tails.
     std::vector<int> locked(parts_.cell_count(), 0);
     for (const WaitGraph::Node& node : result.waits.nodes()) {
         int& state = locked[index(node.x, node.y)];
@@ -58,7 +58,7 @@ void Results::collect_time_outs(RunResult& result) const {
         for (std::size_t at = 0; at < a.size(); ++at) a[at].join(b[at]);
     });
     for (Sums& all : sums) {
-        // Where nothing moves any more, a wait that goes on lasts for ever: longer than any time-out.
+        // When nothing moves any more, a wait that goes on lasts for ever, longer than any time-out.
         all.all.missed_knots = missed;
         if (all.first != never)
             all.all.first_alarm_delay = std::int64_t(all.first) - std::int64_t(result.knot_formed);

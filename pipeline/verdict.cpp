@@ -9,7 +9,7 @@
 namespace raycell {
 namespace {
 
-/// The nodes of all knots or, without any, all nodes: a line each, oldest first.
+/// One line for each node of the knots (without knots: for each node), oldest first.
 std::vector<std::string> report_of(const WaitGraph& graph) {
     std::vector<WaitGraph::Index> order;
     for (const auto& knot : graph.knots()) order.insert(order.end(), knot.begin(), knot.end());
@@ -47,11 +47,11 @@ bool Judge::phase_complete() const {
 }
 
 Verdict Judge::verdict_of(bool locked) {
-    // What is locked stays so, whatever the limit; anything else may only be congested.
+    // A knot stays for ever, whatever the limit; anything else may only be congestion.
     if (joined_.sum(parts_.scheduler.limit_reached()) > 0)
         return locked ? Verdict::deadlock : Verdict::cycle_limit;
     if (parts_.environment.draining) {
-        // Without a knot, what stands still may be freed by what is only held back while draining.
+        // Without a knot, messages that stand still may be freed by rays that draining holds back.
         const bool at_rest = !parts_.scheduler.stopped();
         if (joined_.sum(at_rest && !buffers_empty()) > 0 && !locked) expect_no_work();
         return locked ? Verdict::deadlock : Verdict::livelock;
@@ -63,7 +63,7 @@ Verdict Judge::verdict_of(bool locked) {
 }
 
 void Judge::judge(bool interrupted, RunResult& result) {
-    if (interrupted) {  // whoever interrupts does not want to wait for a proof
+    if (interrupted) {  // a user who interrupts does not want to wait for a proof
         result.verdict = Verdict::interrupted;
         return;
     }
@@ -99,8 +99,8 @@ bool Judge::buffers_empty() const {
                                             [&](const std::unique_ptr<Link>& link) { return empty(*link); }));
 }
 
-/// Nothing moves by itself: if a step of any cell now changes something, its waking was lost, and the verdict
-/// would be the model's fault, not the machine's.
+/// Checks that no cell can move. If a step changes anything, a wake was lost, and the verdict would be the
+/// model's fault, not the machine's: throws std::logic_error.
 void Judge::expect_no_work() {
     const std::uint64_t before = parts_.array.schedule_hash();
     const Cycle stopped = parts_.scheduler.now();
@@ -112,8 +112,7 @@ void Judge::expect_no_work() {
 }
 
 std::vector<std::string> Judge::stuck_report() const {
-    std::vector<std::vector<Joined::RowLine>> sections(
-        2);  // cells, then the border's links: of each all ranks' together
+    std::vector<std::vector<Joined::RowLine>> sections(2);  // cells, then the border's links
     for (const Cell& cell : parts_.array.cells()) {
         for (std::string& line : describe_blocked(cell)) sections[0].push_back({cell.y(), std::move(line)});
     }
@@ -141,7 +140,7 @@ std::vector<std::string> Judge::stuck_report() const {
 std::vector<std::pair<int, int>> blocked_cells(const Array& array, std::size_t most) {
     std::vector<std::tuple<Cycle, int, int>> found;  // (since, y, x)
     for (const Cell& cell : array.cells()) {
-        // Cells that hold rays but no message come last.
+        // Busy cells without a message in their inputs come last.
         const Cycle since = cell.busy() ? std::min(cell.oldest_arrival(), never - 1) : cell.oldest_arrival();
         if (since != never) found.emplace_back(since, cell.y(), cell.x());
     }

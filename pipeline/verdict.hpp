@@ -1,4 +1,4 @@
-// How a run ended: its verdict, the proof, and what was stuck.
+// The end of a run: its verdict, the proof, and what is stuck.
 #pragma once
 
 #include "pipeline/joined.hpp"
@@ -6,17 +6,18 @@
 
 namespace raycell {
 
-/// Looks at a machine in which nobody has anything to do any more, or that was stopped.
+/// Judges a machine in which no client has work any more, or that was stopped.
 class Judge {
   public:
-    /// `totals`: what all ranks have counted.
+    /// `totals`: the counters summed over all ranks.
     Judge(MachineParts& parts, const Joined& joined, const Counters& totals)
         : parts_(parts), joined_(joined), totals_(totals) {}
 
-    /// Whether the phase has done all that it had to.
+    /// Whether the phase has done all its work.
     bool phase_complete() const;
-    /// Of a phase that has not: writes verdict, wait-for graph, knots and report. Throws std::logic_error if
-    /// the model is at fault: a cell that could move was not woken, or what stands still has no knot.
+    /// For a phase that is not complete: writes verdict, wait-for graph, knots and report. Throws
+    /// std::logic_error if the model is at fault: a cell that could move was not woken, or a run stands still
+    /// without a knot.
     void judge(bool interrupted, RunResult& result);
 
   private:
@@ -30,7 +31,7 @@ class Judge {
     const Counters& totals_;
 };
 
-/// Cells, (x, y), in which something stands: those with the oldest messages first, `most` at most.
+/// At most `most` cells (x, y) that hold messages or rays, those with the oldest messages first.
 std::vector<std::pair<int, int>> blocked_cells(const Array& array, std::size_t most);
 
 }  // namespace raycell

@@ -24,8 +24,7 @@ class WaitGraph {
 
     struct Node {
         Kind kind = Kind::buffer;
-        int x = 0;  ///< cell that it belongs to; of a buffer, the cell that its link leads to (the border's,
-                    ///< outside)
+        int x = 0;  ///< its cell; of a buffer, the cell that its link leads to; outside, the border's cell
         int y = 0;
         int side = -1;      ///< of a buffer: the Side that its link comes from; -1: none
         std::string what;   ///< "input east ray_west", "slot 3", ...

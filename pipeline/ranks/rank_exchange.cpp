@@ -18,8 +18,8 @@ void RankProgress::join(const RankProgress& other) {
 }
 
 std::vector<int> even_bands(int ranks, int height) {
-    constexpr int most = 8;   ///< bands of a rank: of more, no cycle becomes more even
-    constexpr int least = 4;  ///< rows, where a rank has more than one band
+    constexpr int most = 8;   ///< bands per rank: more do not balance a cycle better
+    constexpr int least = 4;  ///< rows per band, if a rank has more than one band
     if (ranks > height) {
         throw std::invalid_argument(std::to_string(ranks) + " ranks for " + std::to_string(height) +
                                     " rows of cells; expected a row for each at least");
@@ -77,7 +77,7 @@ SplitLinks* RankExchange::links_to(int other) {
     return found == peers_.end() ? nullptr : found->links.get();
 }
 
-/// Swaps progress with all peers and, `with_links`, what their halves have to tell.
+/// Swaps progress with all peers and, if `with_links`, the records of the half links.
 void RankExchange::carry(const RankProgress& mine, bool with_links) {
     for (std::size_t i = 0; i < peers_.size(); ++i) {
         Bytes& out = with_links ? peers_[i].links->out() : short_out_;
@@ -109,7 +109,8 @@ RankProgress RankExchange::meet(RankProgress mine, Environment& environment) {
                                  parcels_[i].size - sizeof(RankProgress), environment.pools,
                                  environment.answer_routing);
     }
-    // Nothing that came can wake anybody before the next cycle: if that one is run anyway, all is known.
+    // The messages delivered wake no client before the next cycle: if that cycle is run anyway, no second
+    // round is needed.
     if (two && agreed_.next == scheduler.now() + 1) return agreed_;
     mine.next = scheduler.next();
     ++statistics_.second_rounds;

@@ -79,7 +79,7 @@ Distribution::Distribution(sc_core::sc_module_name name, Environment& environmen
     }
 }
 
-/// The way into row y, half of it where the row above is another rank's.
+/// Makes the link into the distributor of row y; a half link if the row above is another rank's.
 void Distribution::join_above(Environment& environment, int y, SplitLinks* above) {
     links_.push_back(std::make_unique<Link>(environment.scheduler, 1, environment.machine.buffer_depth));
     Link& link = *links_.back();
@@ -95,7 +95,7 @@ void Distribution::join_above(Environment& environment, int y, SplitLinks* above
     row(y - 1).down.bind(link);
 }
 
-/// The way out of row y to another rank's.
+/// Makes the half link from the distributor of row y to another rank's.
 void Distribution::join_below(Environment& environment, int y, SplitLinks& below) {
     Link& link = below.make_source(environment.scheduler, 1, environment.machine.buffer_depth);
     link.set_name(name_down(y));

@@ -5,7 +5,7 @@
 namespace raycell {
 namespace {
 
-/// Every side of a cell that is the array's border, in the order of the ports.
+/// Calls `join_cell` for every side of a cell at the array's border, in the order of the ports.
 template <typename F>
 void for_border(const Environment& env, const F& join_cell) {
     for (int y = 0; y < env.height(); ++y) {

@@ -1,5 +1,5 @@
-// The exterior processors: trace the rays that leave the cube classically, through the whole scene (paper,
-// section 3.3).
+// The exterior processors: they trace the rays that leave the cube through the whole scene, in the classical
+// way (paper, section 3.3).
 #pragma once
 
 #include <deque>
@@ -16,16 +16,16 @@
 
 namespace raycell {
 
-/// Joined to every border link. Rays queue in the border links' own buffers until one of the processors is
-/// free; its answer goes back over the same border link after the processor's latency.
+/// Connected to every border link. Rays queue in the buffers of the outward border links until a processor is
+/// free. Its answer goes back into the same cell after the processor's latency.
 class Exterior : public Stage, public Link::Arrivals {
   public:
     Exterior(sc_core::sc_module_name name, Environment& environment, const ExteriorTracer& tracer);
 
-    /// Makes the border links and joins them to the array. Before the simulation starts. Of an array that
-    /// several ranks share, rank 0 has the exterior; the links of the others' cells are halves.
+    /// Makes the border links and connects them to the array; to be called before the simulation starts. With
+    /// several ranks, rank 0 has the exterior, and its links to the cells of other ranks are half links.
     void join(Array& array, RankExchange* ranks = nullptr);
-    /// For the other ranks: the cells' halves of the links to rank 0's exterior.
+    /// For the other ranks: makes their halves of the links to rank 0's exterior.
     static void join_remote(Array& array, Environment& environment, RankExchange& ranks);
 
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
@@ -34,11 +34,11 @@ class Exterior : public Stage, public Link::Arrivals {
     void add_places(WaitMap& map) const;
     void add_waits(WaitMap& map) const;
     bool busy() const { return !waiting_.empty() || working_ > 0; }
-    /// Of all processors, up to now.
+    /// The statistics of all processors, up to now.
     StageStatistics statistics() const;
-    /// Rays that its processors have taken and not yet answered.
+    /// Number of rays that processors have taken and not yet answered.
     int working() const { return working_; }
-    /// Processors that have been busy at some time: all that a run takes memory and time for.
+    /// Number of processors that have ever been busy; only these cost memory and time.
     std::size_t processors_used() const { return processors_.size(); }
 
   private:
@@ -64,11 +64,11 @@ class Exterior : public Stage, public Link::Arrivals {
     const ExteriorTracer& tracer_;
     std::vector<BorderPort> ports_;
     std::vector<std::unique_ptr<Link>> links_;
-    // A step costs what the busy processors cost, however many there are.
-    std::deque<Processor> processors_;  ///< those used so far, by number: the idle one of the lowest is next
+    // The cost of a step grows with the busy processors only, not with their total number.
+    std::deque<Processor> processors_;  ///< those used so far, by number; the lowest idle one is next
     std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> idle_;  ///< of them
-    std::deque<std::uint32_t> at_work_;  ///< in the order in which they will be done: all take as long
-    std::set<std::uint32_t> done_;       ///< with answers that still have to leave
+    std::deque<std::uint32_t> at_work_;  ///< in the order in which they end: all take the same time
+    std::set<std::uint32_t> done_;       ///< processors whose answers must still leave
     std::set<std::tuple<Cycle, std::uint32_t, int>> waiting_;  ///< (visible, port, class): oldest first
     int working_ = 0;
 };

@@ -1,4 +1,4 @@
-// What the border's links and the exterior processors wait for: the exterior's part of the wait-for graph.
+// The exterior's part of the wait-for graph: what the border links and the exterior processors wait for.
 #include "pipeline/stages/exterior.hpp"
 
 namespace raycell {

@@ -22,7 +22,7 @@ LoadItem* Geometry::next_item() {
         Polygon polygon = next;
         if (!clip_to_cube(polygon, scene.frame.cube(), environment().context.arithmetic)) {
             ++polygon_;
-            work_ += env.costs().geometry_polygon;  // found to lie outside: work all the same
+            work_ += env.costs().geometry_polygon;  // finding that it lies outside costs the same
             continue;
         }
         if (std::int64_t(next.object) != object_) {

@@ -1,5 +1,6 @@
-// Stage 1, geometry: hands the tessellated polygons of the scene, cut to the cube, to precomputation. First
-// the sources and the viewer, then per object its features and its polygons, at last the end-of-scene mark.
+// Stage 1, geometry: sends the scene's tessellated polygons, clipped to the cube, to precomputation. The
+// order is: sources and viewer, then the features and the polygons of each object, then the end-of-scene
+// mark.
 #pragma once
 
 #include "pipeline/stages/stage.hpp"
@@ -11,11 +12,11 @@ class Geometry : public Stage {
     Geometry(sc_core::sc_module_name name, Environment& environment) : Stage(name, environment) {}
     sc_core::sc_port<LinkOut> out;
 
-    /// Begins with the scene in the next cycle.
+    /// Begins to send the scene in the next cycle.
     void start() { environment().scheduler.wake(*this, environment().scheduler.now() + 1); }
-    /// Polygons of the scene that it is done with, sent on or found to lie outside the cube.
+    /// Number of the scene's polygons that are done: sent, or found to lie outside the cube.
     std::size_t polygons_taken() const { return polygon_; }
-    /// Load messages in no link.
+    /// Number of load messages in the stage itself.
     std::size_t holds() const { return item_ ? 1 : 0; }
     /// Its part of the wait-for graph.
     void add_places(WaitMap& map) const;
@@ -23,7 +24,7 @@ class Geometry : public Stage {
 
   private:
     Cycle step(Cycle now) override;
-    /// The next item in the loading order; null behind the end-of-scene mark.
+    /// The next item in the loading order; null after the end-of-scene mark.
     LoadItem* next_item();
 
     std::size_t polygon_ = 0;  ///< index into the scene's polygons

@@ -1,5 +1,5 @@
-// What load messages wait for: the wait-for graph of a machine that loads. Messages only go down the
-// pipeline, so something always moves; the graph says what holds up the others.
+// The wait-for graph during loading: what load messages wait for. Messages only move down the pipeline, so
+// something always moves; the graph shows what the others wait for.
 #include "cells/deadlock/cell_waits.hpp"
 #include "pipeline/stages/distribution.hpp"
 #include "pipeline/stages/geometry.hpp"
@@ -25,12 +25,13 @@ void add_stage(WaitMap& map, const Stage& stage, int y, const char* what, const 
     map.add(&stage, 0, std::move(node));
 }
 
-/// A message in a stage, ready to leave in a cycle.
+/// What a message in a stage waits for; it is ready to leave in cycle `ready`.
 Wants wants_out(const WaitMap& map, Cycle now, Cycle ready, const Link& out, const char* name) {
     return now < ready ? Wants::nothing("the end of its work") : wants_buffer(map, out, 0, name);
 }
 
-/// Of a message at the end of a link that a stage can take, or waits for what the stage holds already.
+/// Sets what the message at the head of a link waits for: the stage `taker`, and the message that it may
+/// hold.
 void set_input(WaitMap& map, const Link& in, const Stage& taker) {
     const auto node = map.find(&in, Kind::buffer, 0);
     if (!node) return;
@@ -64,7 +65,7 @@ void RowDistributor::add_waits(WaitMap& map, const Link& input) const {
         map.set(*node, Wants::nothing(item_ ? "the end of the distributor's work" : "its arrival"));
         return;
     }
-    // It stays until both its span and itself have gone on.
+    // The message stays until both its span and the message itself have left.
     Wants wants{false, true, {}, ""};
     if (stage) {
         wants.on.push_back(*stage);

@@ -4,7 +4,7 @@ namespace raycell {
 
 void Precomputation::take(LoadItem& item) {
     if (item.kind != LoadItem::Kind::polygon) {
-        item_ = &item;  // broadcast: passed on in its place
+        item_ = &item;  // broadcast: passed on in its order
         return;
     }
     trapezes_ = precompute(item.polygon, environment().context.arithmetic);

@@ -1,5 +1,5 @@
-// Stage 2, precomputation: polygons into trapezes, with what the display needs at their corners (paper,
-// section 2.2).
+// Stage 2, precomputation: splits polygons into trapezes, with the values at their corners that the display
+// needs (paper, section 2.2).
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ class Precomputation : public Stage {
     sc_core::sc_port<LinkIn> in;
     sc_core::sc_port<LinkOut> out;
 
-    /// Load messages in no link.
+    /// Number of load messages in the stage itself.
     std::size_t holds() const { return item_ ? 1 : 0; }
     /// Its part of the wait-for graph.
     void add_places(WaitMap& map, const Link& input) const;
@@ -26,7 +26,7 @@ class Precomputation : public Stage {
 
     std::vector<Trapeze> trapezes_;  ///< of the polygon at work
     std::size_t next_ = 0;
-    LoadItem* item_ = nullptr;  ///< ready to go out
+    LoadItem* item_ = nullptr;  ///< the message to send
     Cycle ready_ = 0;
 };
 

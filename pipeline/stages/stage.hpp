@@ -1,5 +1,5 @@
-// What the stages before the array have in common: a process woken by the scheduler, a throughput, a
-// utilisation.
+// The common base of the stages before the array and of the exterior: a process woken by the scheduler, a
+// throughput, a utilisation.
 #pragma once
 
 #include <systemc>
@@ -11,8 +11,8 @@
 namespace raycell {
 
 struct StageStatistics {
-    std::uint64_t items = 0;        ///< polygons, trapezes or spans put out
-    std::uint64_t busy_cycles = 0;  ///< at work; waiting for room downstream not included
+    std::uint64_t items = 0;        ///< polygons, trapezes or spans sent; in the exterior, rays taken
+    std::uint64_t busy_cycles = 0;  ///< at work, without waits for room downstream
 };
 
 class Stage : public sc_core::sc_module, public Client {
@@ -25,7 +25,7 @@ class Stage : public sc_core::sc_module, public Client {
         dont_initialize();
     }
     void activate() override { wake_.notify(); }
-    /// Up to now: of an operation that is still going on, the cycles that are over.
+    /// Statistics up to now; an operation that is still going on counts with the cycles that are over.
     StageStatistics statistics() const {
         StageStatistics so_far = statistics_;
         const Cycle now = environment_.scheduler.now();
@@ -33,15 +33,16 @@ class Stage : public sc_core::sc_module, public Client {
         return so_far;
     }
 
-    /// As another stage's were, at whose end this one starts.
+    /// Restores the statistics of a saved stage, with which this one goes on.
     void restore(const StageStatistics& statistics) { statistics_ = statistics; }
 
   protected:
-    /// One cycle; returns the next one in which the stage wants to run of itself.
+    /// Runs one cycle. Returns the next cycle in which the stage must run without being woken; `never` if
+    /// there is none.
     virtual Cycle step(Cycle now) = 0;
     Environment& environment() { return environment_; }
     const Environment& environment() const { return environment_; }
-    /// An operation begins.
+    /// Counts an operation of `cycles` cycles that begins now.
     void work(Cycle now, Cycle cycles) {
         statistics_.busy_cycles += cycles;
         busy_until_ = now + cycles;
