@@ -39,7 +39,7 @@ void add_default_view(Scene& scene, Diagnostics& diagnostics) {
     if (!(radius > 0)) radius = 1;
 
     View view;
-    // Slightly from the side and above: a box open to the front is seen into, and depth shows.
+    // Slightly from the side and from above, to look into a box with an open front and to show depth.
     const dvec3 towards_viewer = glm::normalize(dvec3(0.15, 0.1, 1));
     view.from = centre + towards_viewer * (radius / std::sin(glm::radians(view.angle / 2)));
     view.at = centre;

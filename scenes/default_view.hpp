@@ -7,11 +7,10 @@
 namespace raycell {
 
 /// Gives a scene a view that frames its bounding box, from the side of +z with y up, and one source at the
-/// viewer; a note says so.
+/// viewer. Adds a note about it to `diagnostics`.
 void add_default_view(Scene& scene, Diagnostics& diagnostics);
 
-/// Takes background and view from `view_scene`, and its sources if it has any. Scene::view stays as it is if
-/// `view_scene` has none.
+/// Takes the background of `view_scene`, and its view and its sources if it has any.
 void take_view(Scene& scene, const Scene& view_scene);
 
 }  // namespace raycell

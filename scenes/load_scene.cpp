@@ -23,7 +23,7 @@ Scene load_scene(const std::filesystem::path& path, const std::optional<std::fil
     const std::string file = printable_path(path);
     const std::string extension = lower_extension(path);
     if (extension != ".nff" && extension != ".obj") {
-        // A missing file or a folder deserves its own message.
+        // Opened first, so that a missing file or a folder gets its own message.
         const TextSource exists(path);
         throw InputError(file, 0, "unknown kind of scene file", "a name that ends in .nff or .obj");
     }

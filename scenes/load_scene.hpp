@@ -1,4 +1,4 @@
-// The one door through which programs read scenes.
+// The function through which all programs read scenes.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,10 @@
 
 namespace raycell {
 
-/// Reads an .nff or .obj file (by its extension, in any case) and returns a scene with a view. `view_file` is
-/// an NFF file whose `b`, `v` and `l` lines replace the scene's own; without it an OBJ scene gets
-/// add_default_view's. Warns of a scene without sources or without primitives. Throws InputError, also for an
-/// NFF scene without `v` and without `view_file`.
+/// Reads an .nff or .obj file (known by its extension, in upper or lower case) and returns a scene with a
+/// view. `view_file` is an NFF file that replaces the scene's background and view, and its sources if the
+/// file has any; without it an OBJ scene gets the view of add_default_view(). Warns of a scene without
+/// sources or without primitives. Throws InputError, also for an NFF scene without both `v` and `view_file`.
 Scene load_scene(const std::filesystem::path& path, const std::optional<std::filesystem::path>& view_file,
                  Diagnostics& diagnostics);
 

@@ -14,16 +14,17 @@ namespace raycell {
 
 namespace {
 
-constexpr double max_intensity = 1e6;  ///< of a colour channel: sums and products still fit a float pixel
-constexpr double min_ior = 0.01;       ///< below it the quotient of two indices is no optics
+constexpr double max_intensity = 1e6;  ///< of a colour channel; its sums and products still fit a float pixel
+constexpr double min_ior = 0.01;       ///< below it the quotient of two indices has no optical meaning
 constexpr double min_angle = 1e-3;     ///< degrees
 constexpr double max_angle = 179.99;   ///< degrees
 constexpr double min_relative_size =
-    1e-14;  ///< of an object's coordinates: less is lost in a double's rounding
+    1e-14;  ///< relative to an object's coordinates; smaller sizes are lost in rounding
 
 double largest_component(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Scales to largest component 1 first: neither tiny nor huge vectors lose their direction.
+/// The unit vector, or nothing for a vector without direction. Scales the largest component to 1 first, so
+/// that tiny and huge vectors keep their direction.
 std::optional<dvec3> unit(dvec3 v) {
     const double largest = largest_component(v);
     if (!(largest > 1e-100)) return std::nullopt;
@@ -84,7 +85,8 @@ class NffParser {
         return {x, y, z};
     }
 
-    /// All numbers up to the next word, so that a short entity never eats the next one.
+    /// Reads all numbers up to the next word, so that an entity with too few never takes those of the next.
+    /// Returns their count.
     template <std::size_t capacity>
     std::size_t numbers(std::array<double, capacity>& out, const char* expected) {
         std::size_t count = 0;
@@ -171,7 +173,7 @@ class NffParser {
         has_material_ = true;
     }
 
-    /// Material of the next primitive; counts it.
+    /// Counts the next primitive and returns its material.
     std::uint32_t material_here() {
         if (!has_material_) {
             if (scene_.materials.empty()) scene_.materials.emplace_back();
@@ -217,7 +219,7 @@ class NffParser {
     void polygon(bool patch) {
         const long long count =
             in_.integer(entity_, "a whole number of vertices, 3 or more", 3, 1000000000000LL);
-        // The count is the file's claim: memory only grows with what is really there.
+        // The count is only the file's claim: memory must grow with the vertices really there.
         std::vector<dvec3> vertices, normals;
         const auto sensible = static_cast<std::size_t>(std::min(count, 1024LL));
         vertices.reserve(sensible);

@@ -31,7 +31,7 @@ bool LineReader::next(std::string& line) {
             line.back() = ' ';
             continue;
         }
-        // Inside a word it is part of a name: some modellers number their materials "Material#25".
+        // Inside a word '#' is part of a name: some modellers number their materials, "Material#25".
         comment =
             comment || (c == '#' && (line.empty() || blanks.find(line.back()) != std::string_view::npos));
         if (comment) continue;

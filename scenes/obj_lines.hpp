@@ -1,5 +1,5 @@
-// What stands between an OBJ or MTL file and tinyobjloader: it neither joins continued lines, nor reports a
-// malformed number, nor knows line numbers. So it is fed with one checked line at a time.
+// The layer between an OBJ or MTL file and tinyobjloader. tinyobjloader does not join continued lines, report
+// malformed numbers, or know line numbers, so it is fed one checked line at a time.
 #pragma once
 
 #include <cstddef>
@@ -20,11 +20,11 @@ class LineReader {
 
     explicit LineReader(TextSource source);
 
-    /// Reads the next line, without comment and white space at its ends. False at the end of the file.
-    /// Throws InputError as TextSource does, and for a line of more than max_length characters.
+    /// Reads the next line, without its comment and without white space at its ends. False at the end of the
+    /// file. Throws InputError as TextSource does, and for a line of more than max_length characters.
     bool next(std::string& line);
 
-    /// Where the current line starts, from 1.
+    /// Number of the file's line in which the current line starts, from 1.
     std::size_t line() const { return start_; }
     const std::string& file() const { return source_.name(); }
 
@@ -33,11 +33,11 @@ class LineReader {
     std::size_t start_ = 0;
 };
 
-/// Splits at spaces and tabs; the views point into `line`.
+/// Splits at white space; the views point into `line`.
 std::vector<std::string_view> split(std::string_view line);
 
-/// Kinds of warnings for words that a reader does not know: one for each of the first few, one for all
-/// others, so that no file gives a message for each of its lines.
+/// Kinds of warnings for unknown words: one for each of the first few words, one for all others, so that no
+/// file gives a message for each of its lines.
 class UnknownWords {
   public:
     static constexpr std::size_t most_named = 16;
@@ -51,8 +51,8 @@ class UnknownWords {
 /// The line without its first word.
 std::string_view rest_of(std::string_view line);
 
-/// A stream buffer that asks `next_line()` for text whenever a reader wants more; exceptions pass through.
-/// Since it holds one line at a time, whoever handles that line's content can ask where it stands.
+/// A stream buffer that asks `next_line()` for text whenever its reader needs more; exceptions pass through.
+/// It holds one line at a time, so the line number is known while the reader handles that line.
 class LineFeed : public std::streambuf {
   protected:
     /// Puts the next checked line, with '\n', into `text`; false at the end.

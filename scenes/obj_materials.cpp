@@ -19,9 +19,9 @@ namespace {
 
 constexpr double max_intensity = 1e6;
 constexpr double min_ior = 0.01;
-constexpr double usual_shine = 1000;  ///< MTL's own range of Ns ends here
+constexpr double usual_shine = 1000;  ///< upper end of MTL's own range of Ns
 
-/// What an MTL material says that tinyobjloader does not hand on.
+/// Facts about an MTL material that tinyobjloader does not pass on.
 struct Facts {
     std::string name;
     std::size_t line = 0;
@@ -33,7 +33,7 @@ struct Facts {
     std::optional<double> transparency;  ///< Tr
 };
 
-/// Feeds tinyobjloader with the lines that matter here, complete and checked.
+/// Feeds tinyobjloader with the relevant lines, complete and checked.
 class MtlFeed : public LineFeed {
   public:
     MtlFeed(TextSource source, const std::map<std::string, std::uint32_t>& known, Diagnostics& diagnostics)
@@ -66,7 +66,7 @@ class MtlFeed : public LineFeed {
         return true;
     }
 
-    /// Names what is not read, once per kind.
+    /// Warns of statements that are not read, once per kind.
     void leave_out(const std::vector<std::string_view>& words) {
         const std::string_view key = words[0];
         const auto is_one_of = [&](std::initializer_list<std::string_view> keys) {
@@ -91,7 +91,7 @@ class MtlFeed : public LineFeed {
         } else if (key == "sharpness") {
             name(" is ignored: reflections are sharp");
         } else {
-            // Before the first material it may be any file: none of its text in messages.
+            // Before its first material the file may be of any kind, so no message quotes its text.
             const std::string kind = facts_.empty() ? "unknown word" : unknown_.kind(key);
             diagnostics_.warn(lines_.file(), lines_.line(), kind, kind + "; the line is ignored", 1);
         }
@@ -118,8 +118,8 @@ class MtlFeed : public LineFeed {
         warn(lines_.line(), "material line", what + "; the line is ignored");
     }
 
-    /// The number, or nothing where the line makes another sense or none. No text of the file in messages: a
-    /// library may turn out to be something else.
+    /// The number, or nothing if the word is none. Messages then do not quote the text: the file may turn out
+    /// not to be a material library.
     static std::optional<double> number(std::string_view word) {
         double value = 0;
         if (parse_number(word, value) != NumberFault::none) return std::nullopt;
@@ -273,12 +273,12 @@ void MaterialLibraries::load(std::string_view name, const Place& place, Scene& s
 
     std::map<std::string, int> indices;
     std::vector<tinyobj::material_t> materials;
-    std::string warnings, errors;  // the feed has said it all, with lines
+    std::string warnings, errors;  // unused: the feed has warned, with line numbers
     std::optional<MtlFeed> reading;
     try {
         reading.emplace(TextSource(folder_ / relative), by_name_, diagnostics);
         std::istream stream(&*reading);
-        stream.exceptions(std::ios::badbit);  // else the stream would swallow the feed's errors
+        stream.exceptions(std::ios::badbit);  // otherwise the stream would swallow the feed's errors
         tinyobj::LoadMtl(&indices, &materials, &stream, &warnings, &errors);
     } catch (const InputError& fault_in_text) {
         return refuse(std::string("can't be read (") + fault_in_text.what() + ")");

@@ -1,4 +1,4 @@
-// Materials of OBJ scenes, from their MTL libraries (design, section 8).
+// Materials of OBJ scenes, read from their MTL libraries (design, section 8).
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,29 @@
 
 namespace raycell {
 
-/// The materials that an OBJ scene can name. Kd becomes the colour (with diffuse 1; without Kd the default
-/// Material's), the mean of Ks the specular share, mirrored where illum is 3 to 9; Ns the shine, Ni the index
-/// of refraction; 1 - d, or Tr, the transmitted share where illum is 4, 6, 7 or 9, and the mean of Tf where
-/// such a material has neither. What else there is (Ka, Ke, textures, physically based values, unknown words)
-/// is left out; a warning names it, once per kind and file, but for a black Ke and a Ka that changes nothing.
+/// The materials that an OBJ scene can name. Kd is the colour, with diffuse 1; without Kd both are the
+/// default Material's. The mean of Ks is the specular share; illum 3 to 9 makes it a mirror. Ns is the shine,
+/// Ni the index of refraction. With illum 4, 6, 7 or 9 the transmitted share is 1 - d, or Tr, or without both
+/// the mean of Tf. All else (Ka, Ke, textures, physically based values, unknown words) is ignored with a
+/// warning, once per kind and file, except a black Ke and a Ka that changes nothing.
 ///
-/// Each with a warning: d holds against Tr; the first of two materials of one name; missing components repeat
-/// the last one given; shares are brought into 0..1, a negative Ns to 0; Ni below 0.01 becomes 1; an unknown
-/// illum counts as 2; lines that can't be understood are left out.
+/// Each of these gives a warning: d and Tr disagree (d holds); two materials of one name (the first holds);
+/// missing colour components (they repeat the last one given); shares outside 0..1 (clamped); a negative Ns
+/// (becomes 0); Ni below 0.01 (becomes 1); an unknown illum (counts as 2); lines that can't be understood
+/// (ignored).
 class MaterialLibraries {
   public:
     explicit MaterialLibraries(std::filesystem::path folder);
 
-    /// Adds a library's materials to the scene. A library that is missing, or outside the scene's folder
-    /// (also by a symbolic link), is not opened; a warning says so. `place` is where the scene names it.
-    /// The same of a library that is no text: no fault of a material makes the geometry another one.
+    /// Adds a library's materials to the scene. `place` is where the scene names it. Warns of a library that
+    /// is missing or outside the scene's folder (also by a symbolic link), which is not opened, and of one
+    /// that is no text. Such a library is no error, because the geometry does not depend on materials.
     void load(std::string_view name, const Place& place, Scene& scene, Diagnostics& diagnostics);
 
     /// Index into Scene::materials.
     std::optional<std::uint32_t> find(const std::string& name) const;
 
-    /// A library could not be read; then unknown materials are no news.
+    /// Whether a library could not be read; then unknown materials give no further warning.
     bool incomplete() const { return incomplete_; }
 
   private:

@@ -39,7 +39,7 @@ struct Face {
     std::uint32_t group = 0;  ///< for smoothing; 0: none
 };
 
-/// Feeds tinyobjloader with checked lines, and takes from it what they hold.
+/// Feeds tinyobjloader with checked lines and takes their content from it.
 class ObjParser : public LineFeed {
   public:
     ObjParser(TextSource source, const std::filesystem::path& folder, Diagnostics& diagnostics)
@@ -102,7 +102,7 @@ class ObjParser : public LineFeed {
     std::vector<Face> faces_;
     std::uint32_t group_ = 0;
     SmoothNormals smooth_;
-    std::vector<std::uint32_t> indices_;  ///< of the face at hand
+    std::vector<std::uint32_t> indices_;  ///< of the current face
     std::vector<dvec3> places_;
     std::map<std::string, std::size_t> name_index_;
     std::vector<std::string> names_{""};                ///< "": before any usemtl
@@ -111,7 +111,7 @@ class ObjParser : public LineFeed {
     std::int64_t default_material_ = -1;
 };
 
-/// What is known and left out, each with the reason.
+/// Known statements that are ignored, with the reason.
 struct Ignored {
     const char* why;
     std::vector<std::string_view> words;
@@ -153,7 +153,7 @@ bool ObjParser::next_line(std::string& text) {
     return true;
 }
 
-/// Says what becomes of a statement that is not read; false if it is none of OBJ's.
+/// Warns of a statement that is ignored; false if it is not a statement of OBJ.
 bool ObjParser::ignores(std::string_view key) {
     for (const auto& [why, words] : ignored) {
         if (std::find(words.begin(), words.end(), key) == words.end()) continue;
@@ -169,7 +169,7 @@ bool ObjParser::ignores(std::string_view key) {
     return false;
 }
 
-/// x, y and z of a vertex: without them the geometry is another one.
+/// Checks x, y and z of a vertex. A fault is an error, because the geometry depends on them.
 void ObjParser::check_place(const std::vector<std::string_view>& words, std::string& text) {
     if (words.size() < 4) {
         fail("'v' has " + std::to_string(words.size() - 1) + " numbers",
@@ -182,10 +182,10 @@ void ObjParser::check_place(const std::vector<std::string_view>& words, std::str
         numbers_[static_cast<int>(i) - 1] = value;
     }
     check_extras(words);
-    text = "v 0 0 0\n";  // the numbers are at hand
+    text = "v 0 0 0\n";  // the numbers themselves are in numbers_
 }
 
-/// What follows the place: a weight, a colour, or both; none of it is used.
+/// Checks what follows x y z: a weight, a colour, or both; none of it is used.
 void ObjParser::check_extras(const std::vector<std::string_view>& words) {
     const std::size_t extras = words.size() - 4;
     bool sound = extras == 0 || extras == 1 || extras == 3 || extras == 4;
@@ -200,7 +200,7 @@ void ObjParser::check_extras(const std::vector<std::string_view>& words) {
     }
 }
 
-/// A normal that can't be read has no direction: add_outline takes the face's own in its place.
+/// Checks a normal. One that can't be read becomes 0, and add_outline() replaces it by the face's own.
 void ObjParser::check_normal(const std::vector<std::string_view>& words, std::string& text) {
     numbers_ = dvec3(0);
     bool sound = words.size() == 4;
@@ -249,7 +249,7 @@ void ObjParser::check_face(const std::vector<std::string_view>& words, std::stri
     }
 }
 
-/// v, v/vt, v//vn or v/vt/vn, as tinyobjloader may read it: without what can't be used.
+/// Checks a corner v, v/vt, v//vn or v/vt/vn. Returns it for tinyobjloader, without unusable parts.
 std::string ObjParser::check_corner(std::string_view corner, Form& form) {
     std::array<std::string_view, 3> parts;
     std::size_t count = 0;
@@ -290,7 +290,7 @@ std::string ObjParser::check_vertex_index(std::string_view digits, std::string_v
     fail("'f': found '" + printable(corner) + "'", "a corner v, v/vt, v//vn or v/vt/vn of whole numbers");
 }
 
-/// The index of a texture coordinate or a normal; empty, with a warning, if it is none.
+/// The index of a texture coordinate or a normal; empty, with a warning, if it is malformed.
 std::string ObjParser::check_other_index(std::string_view digits, const char* kind) {
     std::int32_t index = 0;
     if (digits.empty()) return "";
@@ -304,7 +304,7 @@ std::string ObjParser::check_other_index(std::string_view digits, const char* ki
     return "";
 }
 
-/// A line may name several libraries, or one whose name holds spaces.
+/// A line may name several libraries, or one whose name contains spaces.
 void ObjParser::load_libraries() {
     const std::string rest(rest_of(line_));
     const Place place{lines_.file(), lines_.line()};
@@ -314,7 +314,7 @@ void ObjParser::load_libraries() {
         return name.size() > 4 &&
                (name.substr(name.size() - 4) == ".mtl" || name.substr(name.size() - 4) == ".MTL");
     };
-    // "a.mtl b.mtl" are two, "my scene.mtl" is one.
+    // "a.mtl b.mtl" names two libraries, "my scene.mtl" one.
     if (!std::all_of(names.begin(), names.end(), ends_library)) {
         return libraries_.load(rest, place, scene_, diagnostics_);
     }
@@ -323,7 +323,7 @@ void ObjParser::load_libraries() {
 
 Scene ObjParser::parse() {
     tinyobj::callback_t callbacks;
-    // tinyobjloader's own numbers are off in their last digits; the check has read them exactly.
+    // tinyobjloader's own numbers are wrong in their last digits; numbers_ has the exact ones.
     callbacks.vertex_cb = [](void* self, double, double, double, double) {
         static_cast<ObjParser*>(self)->vertices_.push_back(static_cast<ObjParser*>(self)->numbers_);
     };
@@ -343,7 +343,7 @@ Scene ObjParser::parse() {
         parser.name_ = entry->second;
     };
     std::istream stream(this);
-    stream.exceptions(std::ios::badbit);  // else the stream would swallow this feed's errors
+    stream.exceptions(std::ios::badbit);  // otherwise the stream would swallow this feed's errors
     tinyobj::LoadObjWithCallback(stream, callbacks, this);
     if (!any_statement_ && first_unknown_line_ > 0) {
         throw InputError(lines_.file(), first_unknown_line_, "unknown word '" + first_unknown_ + "'",
@@ -360,7 +360,8 @@ Scene ObjParser::parse() {
     return std::move(scene_);
 }
 
-/// Index from 0, `none` for tinyobjloader's 0; below `none` for a relative one that reaches before the first.
+/// Converts tinyobjloader's index to one from 0: `none` for its 0, below `none` for a relative index that
+/// reaches before the first.
 std::int32_t resolve(int index, std::size_t count) {
     if (index >= 0) return index - 1;
     const std::int64_t resolved = static_cast<std::int64_t>(count) + index;
@@ -372,7 +373,7 @@ std::string ObjParser::relative_fault(const char* what, int index, std::size_t c
            (count == 1 ? " is" : " are") + " defined so far";
 }
 
-/// Relative indices count from here, so they are checked here.
+/// Relative indices count back from the elements defined so far, so they are checked here.
 void ObjParser::add_face(const tinyobj::index_t* indices, std::size_t count) {
     faces_.push_back({corners_.size(), count, lines_.line(), name_, group_});
     for (std::size_t i = 0; i < count; ++i) {

@@ -10,18 +10,18 @@ namespace raycell {
 
 namespace {
 
-constexpr double no_area = 1e-9;             ///< of twice the area, with the outline scaled to size 1
+constexpr double no_area = 1e-9;             ///< least doubled area of an outline scaled to size 1
 constexpr double planar = 1e-4;              ///< of the outline's size
 constexpr double printed_digits = 1e-5;      ///< of the largest coordinate: six significant digits
 constexpr double most_printed_error = 1e-2;  ///< of the outline's size
-constexpr double straight_back = -0.9;  ///< cosine to the winding normal of a normal that must be an error
-constexpr std::size_t most_compared_vertices = 256;  ///< looking for crossings takes the square of it
-constexpr std::size_t most_clipped_vertices = 1000;  ///< ear clipping takes the cube of it at worst
+constexpr double straight_back = -0.9;  ///< cosine to the winding normal; a normal below it must be an error
+constexpr std::size_t most_compared_vertices = 256;  ///< finding crossings takes time with its square
+constexpr std::size_t most_clipped_vertices = 1000;  ///< ear clipping takes time with its cube at worst
 
 double largest_component(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// The outline relative to its first vertex and scaled to size 1, so that thresholds have no units and
-/// products neither overflow nor vanish.
+/// An outline relative to its first vertex and scaled to size 1, so that thresholds have no units and
+/// products neither overflow nor underflow.
 struct Scaled {
     std::vector<dvec3> points;
     double size = 0;      ///< largest extent from the first vertex, world units
@@ -84,7 +84,7 @@ void repair_normals(std::vector<dvec3>& normals, const dvec3& winding, const Pla
     for (dvec3& n : normals) {
         const double largest = largest_component(n);
         if (largest > 0) {
-            n /= largest;  // first, so that the length neither overflows nor vanishes
+            n /= largest;  // first, so that the length neither overflows nor underflows
             n = glm::normalize(n);
         }
         if (!(largest > 0) || !std::isfinite(n.x + n.y + n.z)) {
@@ -111,7 +111,7 @@ void repair_normals(std::vector<dvec3>& normals, const dvec3& winding, const Pla
         diagnostics.warn(place.file, place.line, "zero normal",
                          "a vertex normal has no length; replaced by the polygon's own");
     }
-    // Some modellers do this to every patch: one line is enough.
+    // Some modellers do this in every patch: one warning is enough.
     if (flip_all || flipped_one) {
         diagnostics.warn(place.file, place.line, "opposed normals",
                          "vertex normals point against the winding; flipped", 1);
@@ -122,7 +122,7 @@ double cross2(const dvec2& a, const dvec2& b, const dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Counter-clockwise outline in the plane seen against the normal.
+/// Projects the outline into its plane; it is counter-clockwise when seen against the normal.
 std::vector<dvec2> flatten(const Scaled& outline) {
     const dvec3 n = outline.normal;
     const dvec3 helper = std::abs(n.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
@@ -148,7 +148,8 @@ bool is_ear(const std::vector<dvec2>& p, const std::vector<std::size_t>& ring, s
     return true;
 }
 
-/// Ear clipping of a counter-clockwise outline; an outline that crosses itself ends in a fan of what is left.
+/// Ear clipping of a counter-clockwise outline. If no ear is left (in an outline that crosses itself), the
+/// rest becomes a fan.
 Triangles clip_ears(const std::vector<dvec2>& p) {
     Triangles out;
     std::vector<std::size_t> ring(p.size());
@@ -174,7 +175,8 @@ bool edges_cross(const dvec2& a, const dvec2& b, const dvec2& c, const dvec2& d)
     return cross2(a, b, c) * cross2(a, b, d) < 0 && cross2(c, d, a) * cross2(c, d, b) < 0;
 }
 
-/// Quadratic, so only asked of outlines of up to most_compared_vertices; edges that only touch do not cross.
+/// Whether edges of the outline cross; edges that only touch do not. Takes quadratic time, so outlines of
+/// more than most_compared_vertices are not checked: false.
 bool crosses_itself(const std::vector<dvec2>& p) {
     const std::size_t n = p.size();
     if (n > most_compared_vertices) return false;

@@ -11,7 +11,7 @@ std::uint64_t key_of(std::uint32_t group, std::uint32_t vertex) {
     return std::uint64_t(group) << 32 | vertex;
 }
 
-/// The direction, or 0 of what has none; neither tiny nor huge vectors lose it.
+/// The unit vector, or 0 for a vector without direction; tiny and huge vectors keep theirs.
 dvec3 direction(const dvec3& v) {
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     return largest > 0 ? glm::normalize(v / largest) : dvec3(0);

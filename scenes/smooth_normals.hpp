@@ -9,17 +9,17 @@
 
 namespace raycell {
 
-/// Vertex normals for faces that have none but are to look smooth: at each vertex, the mean of the normals of
-/// the group's faces there, each weighted by its angle at the vertex, so that it does not matter how a face
-/// is cut into triangles.
+/// Vertex normals for the faces of smoothing groups that have none. The normal at a vertex is the mean of the
+/// normals of the group's faces there, each weighted by its angle at the vertex, so that it does not matter
+/// how a face is cut into triangles.
 class SmoothNormals {
   public:
-    /// Counts a face in. `indices` name its vertices, `vertices` are their places.
+    /// Adds a face. `indices` name its vertices, `vertices` are their positions.
     void add(std::uint32_t group, const std::vector<std::uint32_t>& indices,
              const std::vector<dvec3>& vertices);
 
-    /// Normals of a face that was added, after all were; not of unit length, 0 where the faces cancel out.
-    /// Empty where all of them are the face's own, as in a group that lies in one plane.
+    /// The unit normals at the vertices of a face; 0 where the faces cancel out. To be called when all faces
+    /// have been added. Empty if all are the face's own normal, as in a group that lies in one plane.
     std::vector<dvec3> of(std::uint32_t group, const std::vector<std::uint32_t>& indices,
                           const std::vector<dvec3>& vertices) const;
 

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t buffer_size = 64 * 1024;
 
-/// std::from_chars does not say which end of the range was missed: the decimal exponent of the first
-/// significant digit does.
+/// Whether a number out of range is too small. std::from_chars does not tell; the decimal exponent of the
+/// first significant digit does.
 bool is_underflow(std::string_view word) {
     const std::size_t e = word.find_first_of("eE");
     const std::string_view mantissa = word.substr(0, e);

@@ -1,4 +1,4 @@
-// Characters, lines and numbers of a text file, the same for every reader.
+// Characters, lines and numbers of a text file, for all readers.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,20 @@
 
 namespace raycell {
 
-/// No number of a scene may be larger in magnitude: products of four lengths still fit a double.
+/// Largest magnitude of a scene's numbers: products of four lengths still fit a double.
 constexpr double max_magnitude = 1e30;
 
 enum class NumberFault { none, malformed, not_finite, too_large };
 
-/// Reads a decimal number that fills the whole word, whatever the locale. Hexadecimal, nan, inf and numbers
-/// beyond max_magnitude are faults; what is too small for a double becomes 0.
+/// Reads a decimal number that fills the whole word, in any locale. Hexadecimal, nan, inf and numbers beyond
+/// max_magnitude are faults; a number too small for a double becomes 0.
 NumberFault parse_number(std::string_view word, double& value);
 
 /// What parse_number expected, for messages.
 const char* describe(NumberFault fault);
 
-/// A text, character by character, in constant memory. LF, CRLF and CR all end a line and are handed over as
-/// '\n'; a UTF-8 byte order mark is skipped. Throws InputError for a NUL byte, UTF-16 or a read error.
+/// Reads a text character by character, in constant memory. LF, CRLF and CR all end a line and are returned
+/// as '\n'; a UTF-8 byte order mark is skipped. Throws InputError for a NUL byte, UTF-16 or a read error.
 class TextSource {
   public:
     static constexpr int end = -1;

@@ -7,10 +7,10 @@ namespace raycell {
 
 namespace {
 
-/// Ctrl-Z is among them: DOS ends a text with it.
+/// Includes Ctrl-Z, which ends a text in DOS.
 bool is_space(int c) { return c == ' ' || c == '\n' || c == '\t' || c == '\f' || c == '\v' || c == 0x1a; }
 
-/// Anything that starts like a number, and the words that C would read as one.
+/// True for any text that starts like a number, and for the words that C reads as numbers.
 bool looks_like_number(std::string_view text) {
     const char c = text[0];
     if ((c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.') return true;

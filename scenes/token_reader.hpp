@@ -19,7 +19,7 @@ struct Entity {
 /// Splits a text at white space; '#' starts a comment to the end of the line. Constant memory.
 class TokenReader {
   public:
-    enum class Kind { end, word, number };  ///< number: looks like one, may still turn out malformed
+    enum class Kind { end, word, number };  ///< number: looks like one, but may be malformed
 
     /// Reads the first token. Throws InputError as TextSource does, and for a token of more than 256
     /// characters.
@@ -28,17 +28,17 @@ class TokenReader {
     Kind kind() const { return kind_; }
     std::string_view text() const { return {buffer_.data(), size_}; }
 
-    /// Line of the current token; at the end of the file, of the last one.
+    /// Line of the current token; at the end of the file, that of the last one.
     std::size_t line() const { return token_line_; }
     const std::string& file() const { return source_.name(); }
 
     void advance();
 
-    /// Takes the current token as a number. Throws InputError if it is none; `expected` says what it was to
-    /// be.
+    /// Takes the current token as a number. Throws InputError if it is none; `expected` describes it in the
+    /// message.
     double number(const Entity& entity, std::string_view expected);
 
-    /// Takes the current token as a whole number from `low` to `high`.
+    /// Takes the current token as a whole number from `low` to `high`. Throws InputError if it is none.
     long long integer(const Entity& entity, std::string_view expected, long long low, long long high);
 
     /// "'p' in line 7".
