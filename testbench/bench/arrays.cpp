@@ -1,10 +1,10 @@
-// The array under SystemC, and without it.
+// The cases that run an array: under SystemC, and without it.
 #include "testbench/bench/cases.hpp"
 
 namespace raycell::bench {
 namespace {
 
-/// An array without stages before it, as it stands when tracing begins.
+/// An array without the stages before it, as it stands when tracing begins.
 struct Bench {
     Bench(const Traffic& traffic, const Granularity& granularity)
         : picture(traffic.side(), traffic.side()), environment(traffic.environment(scheduler, picture)) {

@@ -1,4 +1,4 @@
-// A mesh of cells that do no more than forward, on SystemC's own channel.
+// A mesh of cells that only forward messages, over SystemC's own channel.
 #include <array>
 #include <ostream>
 #include <systemc>
@@ -57,7 +57,7 @@ class FifoCell : public sc_core::sc_module {
             }
         }
     }
-    /// Sends what it can; empties `held` then.
+    /// Sends the message if it can, and then empties `held`. False: it stays.
     bool move(Message& held) {
         if (held.kind == Message::Kind::ray && !forward(*held.ray)) {
             if (held.ray->stage != RayPacket::Stage::untested) return false;
@@ -70,7 +70,7 @@ class FifoCell : public sc_core::sc_module {
         held = Message();
         return true;
     }
-    /// False: it waits for its output (then it is decided), or ends here (then it is untested again).
+    /// False: the ray waits for its output (`decided`) or ends in this cell (still `untested`).
     bool forward(RayPacket& packet) {
         if (packet.stage == RayPacket::Stage::untested)
             packet.visit = visit_cell(store_, packet.ray, environment_.context);
@@ -104,7 +104,7 @@ class FifoCell : public sc_core::sc_module {
     CellStore store_;
     int x_;
     int y_;
-    std::array<Message, side_count * classes + 1> held_;  ///< the last one: its own ray
+    std::array<Message, side_count * classes + 1> held_;  ///< the last one: the own ray
 };
 
 struct Mesh {

@@ -1,5 +1,5 @@
-// raycell_bench: what a hop costs, by who runs the cells. A process elaborates once, so it runs one case;
-// scripts/study bench runs them all.
+// raycell_bench: the cost of a hop, by what runs the cells. SystemC elaborates once per process, so a process
+// runs one case; scripts/study bench runs them all.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>

@@ -8,7 +8,7 @@
 namespace raycell::bench {
 namespace {
 
-/// A ray is under way for some sixteen cells.
+/// A ray crosses about sixteen cells before it hits.
 TrafficSettings draws() {
     TrafficSettings settings;
     settings.hit_probability = 1.0 / 16;

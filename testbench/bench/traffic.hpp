@@ -10,13 +10,13 @@
 
 namespace raycell::bench {
 
-/// What a case measures. All cases of one array make the same hops: the same rays, cell by cell.
+/// Measurements of one case. All cases of one array make the same hops: the same rays, cell by cell.
 struct Measured {
     double seconds = 0;         ///< of tracing
     std::uint64_t hops = 0;     ///< of rays and answers, cell to cell
     std::uint64_t cycles = 0;   ///< simulated; 0: the case has none
-    double build_seconds = 0;   ///< to the end of elaboration
-    double bytes_per_cell = 0;  ///< after that, nothing under way; 0: the case has no cells
+    double build_seconds = 0;   ///< of construction and, but for `sc_fifo`, elaboration
+    double bytes_per_cell = 0;  ///< once constructed; 0: the case has no cells
 };
 
 /// Scene, draws and settings of a square array.
@@ -35,14 +35,15 @@ class Traffic {
     CellScene scene_;
 };
 
-/// What a ray comes to in a cell: it goes on, or an answer takes its place.
+/// Whether a ray goes on to another cell; otherwise an answer takes its place.
 bool goes_on(const Environment& environment, const Visit& visit, int x, int y);
-/// Where an answer goes on to; call only away from its home.
+/// The side over which an answer goes on; the cell must not be its home.
 Side way_home(const Answer& answer, int x, int y);
 
-/// Processor time so far, in seconds: one thread, so the wall time on an idle machine, and nearly the same on
-/// a busy one. The process's resident bytes.
+/// Processor time of the process so far, in seconds. With one thread it equals the wall time on an idle
+/// machine and is nearly the same on a busy one.
 double clock_seconds();
+/// Resident memory of the process, bytes.
 double resident_bytes();
 
 }  // namespace raycell::bench

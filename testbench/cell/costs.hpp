@@ -1,4 +1,4 @@
-// Cycles and rays that the scenarios have in common. Written out on purpose, not taken from the model:
+// Cycles and rays that the scenarios share. They are written out on purpose, not taken from the model:
 // docs/reference/cell.md has the costs, docs/reference/cell_tb.md the words.
 #pragma once
 
@@ -11,8 +11,8 @@ constexpr int east_bound = 0;
 constexpr int west_bound = 1;
 constexpr int answers = 2;
 
-// Cycles over links of 20 bits, of messages of 3x3 cells, M = 8, a cube 10 deep (4 + 20 bits of depth); an
-// address is home 4, slot 4, child 6.
+// Link cycles of messages: links of 20 bits, 3x3 cells, M = 8, a cube 10 deep (4 + 20 bits of depth). An
+// address has home 4, slot 4 and child 6 bits.
 constexpr int ray_link = 13;       // 3 + 64 + 60 + 52 + 20 + 20 + 6 + 14 + 3 = 242 bits
 constexpr int shadow_link = 12;    // without the generation: 236 bits
 constexpr int intensity_link = 4;  // 3 + 60 + 14 = 77 bits
@@ -22,7 +22,7 @@ constexpr Cycle walk = 4;
 constexpr Cycle reciprocal = 4;
 constexpr Cycle root = 5;
 constexpr Cycle compare_run = 2;
-/// A voxel whose run meets the ray: the edges' test, where the ray meets the plane, two edges.
+/// A voxel whose run meets the ray: the edge test, the point where the ray meets the plane, two edges.
 constexpr Cycle compare = compare_run + 4 + reciprocal + 2 * 2;
 constexpr Cycle return_route = 1;
 constexpr Cycle set_up = 20 + 7 + root;  // point and interpolated normal
@@ -33,7 +33,7 @@ constexpr Cycle load_forward = 1;
 
 inline const dvec3 black{0, 0, 0};
 
-/// A ray that the cell (0, 1) sent, in its coordinates of the cell (1, 1).
+/// A ray that cell (0, 1) sent, in the coordinates of cell (1, 1).
 inline Ray ray_of(RayKind kind, const dvec3& position, const dvec3& direction) {
     Ray ray;
     ray.kind = kind;
@@ -59,8 +59,8 @@ inline Answer answer_for(const Ray& ray, Answer::Kind kind, const dvec3& colour 
     return answer;
 }
 
-/// The trace begins in cycle 1 with nothing loaded: the cell's own ray is tested from 1 to 5, leaves through
-/// the back, where nothing is, and its answer is home at once.
+/// A cell with nothing loaded; the trace begins in cycle 1. The own ray is tested from cycle 1 to 5 and
+/// leaves through the back; nothing lies there, so its answer is home at once.
 inline Script empty_cell(const std::string& name, const std::string& says) {
     Script script(name, says);
     script.trace(1).pixel(1 + walk, black);
@@ -69,8 +69,8 @@ inline Script empty_cell(const std::string& name, const std::string& says) {
 
 constexpr Cycle walled_trace = 20;
 
-/// A cell with a mirror at x = 0.75 that faces west, from z = 2 to 8, so that it stands beside the cell's own
-/// ray. It is loaded in cycles 1 to 14, the trace begins in cycle 20.
+/// A cell with a mirror at x = 0.75 that faces west, from z = 2 to 8; the own ray passes beside it. The
+/// mirror is loaded in cycles 1 to 14, the trace begins in cycle 20.
 inline Script mirrored_cell(const std::string& name, const std::string& says) {
     Script script(name, says);
     Material mirror;

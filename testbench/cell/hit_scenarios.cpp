@@ -8,11 +8,11 @@ namespace {
 
 const Ray arriving = ray_of(RayKind::reflected, {0, 0.5, 5}, {1, 0, 0});
 
-// Sent in 100, there in 113, tested until 127: it hits, takes a slot, and the shading unit sets it up until
-// 178.
+// Sent in 100, there in 113, tested until 131: it hits and takes a slot. The shading unit sets it up until
+// 182.
 constexpr Cycle hit = 100 + ray_link + walk + compare;
 constexpr Cycle child_sent = hit + set_up + reflect;
-// The child is tested in its own cell, where it can't hit the polygon that it leaves; its depth run is
+// The child is tested in its own cell. It can't hit the polygon that it leaves, so only its depth run is
 // compared.
 constexpr Cycle child_tested = child_sent + walk + compare_run;
 

@@ -22,7 +22,7 @@ std::vector<Scenario> loading_scenarios() {
         const LoadItem setup = load_item(LoadItem::Kind::setup);
         const LoadItem features = load_item(LoadItem::Kind::features, 0);
         const LoadItem end = load_item(LoadItem::Kind::end_of_scene);
-        // The second waits for the wires: the first takes them for 6 cycles from 8 on.
+        // The second waits for room: the first is on the wires for 6 cycles from 8 on and is taken out in 14.
         script.in(1, Side::west, setup_link, setup)
             .take(7 + load_forward, Side::west, 0)
             .out(7 + load_forward, Side::east, setup_link, setup)
@@ -42,7 +42,7 @@ std::vector<Scenario> loading_scenarios() {
         const LoadItem here = span_of(script.setup(), 4, {0.5, 0, 4}, {2, 0, 0}, {0, 3, 0}, 1, 1);
         LoadItem next = here;
         next.span.x = 2;
-        // Relative to the next cell: what stands at x here stands at x - 1 there.
+        // In the coordinates of the next cell: x here is x - 1 there.
         for (int i = 0; i < next.span.edge_count; ++i)
             next.span.edges[std::size_t(i)].c += next.span.edges[std::size_t(i)].a;
         for (int i = 0; i < next.span.outline_count; ++i) next.span.outline[std::size_t(i)].x -= 1;

@@ -119,7 +119,7 @@ class Waveform {
     Scheduler& scheduler_;
 };
 
-/// A scenario as golden vectors: its setup, and what its cell really is told and does.
+/// A scenario as golden vectors: its setup and its events.
 std::string vectors_of(const Scenario& scenario) {
     RenderOptions options;
     CLI::App app{"configuration"};
@@ -145,7 +145,7 @@ void check(const Options& options, std::size_t scenarios) {
         throw UsageError("--vcd: '" + printable(vcd) + "': expected a name that ends in .vcd");
 }
 
-/// Announces what is to be written; throws UsageError if it would overwrite what is replayed.
+/// Announces the files to be written. Throws UsageError if one would overwrite a file to be replayed.
 void announce(const Options& options, OutputSet& outputs) {
     if (!options.write.empty()) {
         outputs.announce({""});
@@ -162,7 +162,8 @@ void announce(const Options& options, OutputSet& outputs) {
 }
 
 int run_all(const Options& options, const std::vector<Scenario>& scenarios, OutputSet& outputs) {
-    std::vector<std::unique_ptr<CellBench>> benches;  // all before the first runs: SystemC elaborates once
+    std::vector<std::unique_ptr<CellBench>>
+        benches;  // all made before the first run: SystemC elaborates once
     for (const Scenario& scenario : scenarios) {
         const std::string name = "bench_" + std::to_string(benches.size());
         benches.push_back(

@@ -19,7 +19,7 @@ struct Scenario {
 /// All of them, in the order of a cell's life.
 std::vector<Scenario> all_scenarios();
 
-// Its parts, a file each.
+// The parts of all_scenarios(), a file each.
 std::vector<Scenario> loading_scenarios();
 std::vector<Scenario> routing_scenarios();
 std::vector<Scenario> hit_scenarios();

@@ -9,9 +9,9 @@
 
 namespace raycell {
 
-/// The cell (1, 1) in the middle of 3x3, exact arithmetic, a cube 10 deep in 10 levels, the viewer at
-/// infinity, nothing around the cube: its own primary ray sees the background unless something is loaded.
-/// Everything else is the default machine. Events may be added in any order.
+/// Scenario of cell (1, 1) in the middle of 3x3: exact arithmetic, a cube 10 deep in 10 levels, the viewer at
+/// infinity, nothing around the cube, otherwise the default machine. The own ray sees the background unless
+/// something is loaded. Events may be added in any order.
 class Script {
   public:
     Script(std::string name, std::string says);
@@ -25,7 +25,7 @@ class Script {
     Script& free(Cycle cycle, Side towards, int index);
     Script& trace(Cycle first);
 
-    // What it has to do. A ray's or an answer's branch is the model's own and may be any.
+    // What it has to do. The branch of a ray or an answer is not compared: only the model has it.
     Script& take(Cycle cycle, Side from, int index);
     Script& out(Cycle cycle, Side towards, int index, int cycles, const Ray& ray);
     Script& out(Cycle cycle, Side towards, int index, int cycles, const Answer& answer);
@@ -43,8 +43,9 @@ class Script {
     Arithmetic arithmetic_;
 };
 
-/// The part of a rectangle corner, corner + u, corner + u + v, corner + v (array coordinates) in the row of
-/// cell (x, y), as its row sends it to the cell at `x` or, if it begins further east, there.
+/// The span of a rectangle corner, corner + u, corner + u + v, corner + v (array coordinates) in row y, as it
+/// arrives in the cell at `x` or, if it begins further east, in its first cell. Throws std::logic_error
+/// unless the rectangle is one trapeze that meets the row.
 LoadItem span_of(const CellSetup& setup, std::uint32_t polygon, const dvec3& corner, const dvec3& u,
                  const dvec3& v, int x, int y);
 /// A load message without fields, or the features of an object.

@@ -23,7 +23,7 @@ Ray child_of_first() {
     return child;
 }
 
-// With M = 1 a slot's number has 1 bit instead of 4: a ray has 239 bits.
+// With M = 1 a slot number has 1 bit instead of 4, so a ray has 239 bits.
 constexpr int short_ray_link = 12;
 constexpr Cycle hit = 100 + short_ray_link + walk + compare;
 constexpr Cycle child_sent = hit + set_up + reflect;
@@ -62,7 +62,7 @@ void add_full_stores(std::vector<Scenario>& all) {
         constexpr Cycle answered = home + shade;
         Ray child_of_second = child_of_first();
         child_of_second.position = {1, 0.25, 6};
-        // In the cycle in which the first one's answer leaves, its slot is free.
+        // The slot is free in the cycle in which the first ray's answer leaves.
         script.in(300, Side::west, answers, intensity_link, child)
             .take(home, Side::west, answers)
             .out(answered, Side::west, answers, intensity_link,
@@ -119,7 +119,7 @@ std::vector<Scenario> waiting_scenarios() {
             .out(second_hit, Side::west, answers, verdict_link,
                  answer_for(second_ray(), Answer::Kind::postponed))
             .free(child_tested + short_ray_link, Side::west, west_bound);
-        // Told in 302; the jitter, below 64, is a hash of seed, id and attempt.
+        // The notice is home in 302. The jitter, below 64, is a hash of seed, id and attempt.
         constexpr Cycle jitter = 37;
         constexpr Cycle again = 302 + 64 + jitter;
         script

@@ -10,17 +10,18 @@
 
 namespace raycell {
 
-/// Throws UsageError where loaded arrays can't be kept or used.
+/// Throws UsageError if the options don't allow loaded arrays to be saved or used.
 void check_arrays(const RenderOptions& options);
 
-/// The array to start with is read before the machine is built: what is refused is refused at once.
+/// The loaded arrays of one run. --load-array is read before the machine is built, so that a file is refused
+/// at once.
 class ArrayFiles {
   public:
-    /// Throws UsageError for a file of another scene, size or other settings that voxels depend on, and
-    /// std::runtime_error for one that is damaged.
+    /// Reads --load-array, if given. Throws UsageError for a file of another scene, size or other settings
+    /// that voxels depend on, and std::runtime_error for a damaged one.
     ArrayFiles(const RenderOptions& options, const CellScene& scene);
 
-    /// Has a machine start with the array that was read, or write the one that it loads. Call once.
+    /// Makes a machine start with the array that was read, or write the one that it loads. Call once.
     void attach(Machine& machine, OutputSet& outputs);
 
   private:

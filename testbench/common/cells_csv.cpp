@@ -27,7 +27,7 @@ struct Inputs {
     std::uint64_t busy_cycles = 0;
 };
 
-/// Per cell, of the links from its neighbours.
+/// For each cell, its links from neighbours.
 std::vector<Inputs> inputs_of(Machine& machine) {
     const Array& array = machine.array();
     const BufferClasses& classes = machine.environment().classes;

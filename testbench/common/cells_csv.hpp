@@ -9,12 +9,12 @@
 
 namespace raycell {
 
-/// What stands above the cells' lines.
+/// The header line of a timed run's file.
 std::string cells_csv_header();
-/// A line per cell, of each row that the machine has, from the top down. A link's buffers stand at the cell
-/// that it leads to.
+/// A text for each row of cells that the machine has, from the top down, with a line per cell. Buffers are
+/// listed at the cell that their link leads to.
 std::vector<std::string> cells_csv_rows(Machine& machine, const RunResult& result);
-/// What the untimed machine knows: voxels and edges.
+/// The whole file of the untimed machine, which knows only voxels and edges.
 std::string cells_csv(const UntimedMachine& machine);
 
 }  // namespace raycell

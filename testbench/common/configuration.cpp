@@ -60,8 +60,8 @@ class Reader {
         std::string word;
         if (const auto text = node.value_exact<std::string>()) {
             word = *text;
-            // Empty is the default of file names; as anything else it is an error, found by the option's own
-            // check.
+            // An empty string is the default of file names. For other options it is an error, which the
+            // option's own check finds.
             if (word.empty() &&
                 (key == "view" || key == "scene" || key == "save-array" || key == "load-array"))
                 return;
@@ -116,7 +116,7 @@ std::vector<std::string> arguments_from_text(const std::string& text, const std:
 
 std::string to_toml(const nlohmann::ordered_json& values) {
     std::string text;
-    // JSON's strings, numbers and lists are TOML's too.
+    // JSON's strings, numbers and lists are valid TOML.
     for (const auto& [key, value] : values.items()) {
         text += key + " = " + value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     }

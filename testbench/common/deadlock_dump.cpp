@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder beside the results, gone at the end.
+/// A folder beside the results, removed at the end.
 class ScratchFolder {
   public:
     explicit ScratchFolder(const std::string& prefix) {
@@ -52,8 +52,8 @@ std::string read_text(const fs::path& path) {
     return text.str();
 }
 
-/// Runs this program with these words; its standard error goes to a file. Returns its exit code, -1 if it was
-/// ended by a signal. Throws Interrupted.
+/// Runs this program again with these words, its standard error going to a file. Returns its exit code, -1 if
+/// a signal ended it. Throws Interrupted.
 int run_again(std::vector<std::string> words, const std::string& errors) {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -88,14 +88,14 @@ nlohmann::ordered_json probing(nlohmann::ordered_json config, const RenderOption
     config["truth"] = false;
     config["quiet"] = true;
     config["output"] = prefix;
-    if (!array.empty()) {  // what the first run kept, the second needs not load
+    if (!array.empty()) {  // saved by the first run; no need to load again
         config["load-array"] = array;
         config["save-array"] = "";
     }
     return config;
 }
 
-/// What the second run had to say about the dump's size, under the dump's final name.
+/// Repeats the second run's warnings of the dump's size, under the dump's final name.
 void pass_on_warnings(const std::string& said, const std::string& prefix) {
     std::istringstream lines(said);
     for (std::string line; std::getline(lines, line);) {

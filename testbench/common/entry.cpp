@@ -19,7 +19,7 @@
 namespace raycell {
 namespace {
 
-/// SystemC prints its banner before sc_main(); standard error belongs to the run's own messages.
+/// Turns off the banner that SystemC prints before sc_main(): standard error is for the run's own messages.
 const bool banner_off = [] {
     setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 0);
     return true;
@@ -34,13 +34,13 @@ int number_in_environment(std::initializer_list<const char*> names, int otherwis
     return otherwise;
 }
 
-/// Takes what is printed and drops it.
+/// Discards what is printed.
 class Nowhere : public std::streambuf {
     int overflow(int c) override { return traits_type::not_eof(c); }
 };
 
-/// A closed standard stream's number would be given to the next file that is opened, and what is printed
-/// would go there. Put open for the wrong direction, it fails as a closed one does.
+/// Fills closed standard streams: the next file opened would get such a stream's number, and prints would go
+/// into it. Opened for the wrong direction, the stream fails as a closed one does.
 void occupy_standard_streams() {
     for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
@@ -49,28 +49,29 @@ void occupy_standard_streams() {
     }
 }
 
-/// What has been printed so far is out, or this throws.
+/// Flushes standard output. Throws std::runtime_error if that fails.
 void flush_output() {
     std::cout.flush();
     if (std::fflush(stdout) != 0 || !std::cout) throw std::runtime_error("standard output can't be written");
 }
 
-/// Of several ranks, rank 0 says what all have to say. Returns what the process has to exit with.
+/// Prints the message; with several ranks, rank 0 prints what all have in common. Returns the process's exit
+/// code.
 int report_failure(const std::string& message, int code) {
     const int rank = launched_ranks().rank;
     if (rank == 0) {
         std::cerr << message << std::endl;
-    } else if (failure_hook && !message.empty()) {  // without a hook, every rank has the same to say
+    } else if (failure_hook && !message.empty()) {  // without a hook, all ranks have the same message
         std::fprintf(stderr, "rank %d: %s\n", rank, message.c_str());
     }
     if (failure_hook) failure_hook(code);
-    return rank == 0 ? code : exit_done;  // mpirun ends rank 0, message or not, once another rank fails
+    return rank == 0 ? code : exit_done;  // if this rank failed, mpirun would end rank 0 too soon
 }
 
 std::string no_memory;                ///< the message
-std::unique_ptr<char[]> for_message;  ///< memory that it can have
+std::unique_ptr<char[]> for_message;  ///< memory kept for printing it
 
-/// Called where memory runs out: taking SystemC's modules down would need some.
+/// Called when memory runs out. Ends at once: destroying SystemC's modules would need memory.
 [[noreturn]] void out_of_memory() {
     std::set_new_handler(nullptr);
     for_message.reset();
@@ -124,7 +125,7 @@ int run_guarded(const std::string& name, const std::string& smaller, const std::
         return done;
     } catch (const InputError& error) {
         message = error.what();
-    } catch (const std::bad_alloc&) {  // of Embree's
+    } catch (const std::bad_alloc&) {  // thrown by Embree
         message = no_memory;
     } catch (const RanksRefused& error) {
         message = name + ": " + error.what();

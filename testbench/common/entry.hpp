@@ -17,8 +17,8 @@ struct RanksRefused : std::runtime_error {
 /// Another rank has failed and tells why; this one ends quietly.
 struct OtherRankFailed : std::exception {};
 
-/// This process among those that mpirun has started; one alone without it. From the environment, so that it
-/// is known before anything else is.
+/// This process among those that mpirun started; without mpirun, the only one. Taken from the environment, so
+/// that it is known before anything else runs.
 struct LaunchedRanks {
     int rank = 0;
     int count = 1;
@@ -29,15 +29,15 @@ LaunchedRanks launched_ranks();
 /// Throws RanksRefused if this is one of several ranks; `what` names the program or its subcommand.
 void refuse_ranks(const std::string& what);
 
-/// run_guarded() calls it after the message of an error, with the exit code.
+/// Sets a function that run_guarded() calls with the exit code, after the message of an error.
 void set_failure_hook(void (*hook)(int code));
 
 /// Parses the words of the command line (without the program) and then runs. Returns the exit code.
 int parse_and_run(CLI::App& app, std::vector<std::string> words, const std::function<int()>& run);
 
-/// Runs a program to its exit code: what is thrown becomes a message on standard error, "NAME: what", and
-/// exit code 1. `smaller`: what to try when memory runs out. Of several ranks, rank 0 alone prints; an error
-/// of another rank is told with its number if it is not every rank's.
+/// Runs a program and returns its exit code. An exception becomes a message on standard error, "NAME: what",
+/// and exit code 1 (RanksRefused: 2). `smaller`: what to try when memory runs out. With several ranks, rank 0
+/// alone prints; another rank's error is printed with its number unless every rank has the same.
 int run_guarded(const std::string& name, const std::string& smaller, const std::function<int()>& run);
 
 }  // namespace raycell

@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM end a machine's run, not the program: what there is so far gets written.
+// SIGINT, SIGTERM and SIGHUP end a machine's run, not the program: the results so far are written.
 #pragma once
 
 #include <exception>
@@ -8,7 +8,8 @@
 
 namespace raycell {
 
-/// While it lives, until its results are published. A second signal ends the program at once.
+/// While it lives, a first signal ends the machine's run and a second one the program. Keep it until the
+/// run's results are published.
 class Interruptible {
   public:
     explicit Interruptible(Machine& machine) { machine.interrupt_by(noted_signal()); }
@@ -17,7 +18,7 @@ class Interruptible {
     NotedSignals noted_;
 };
 
-/// What comes after the machine's run was cut short by a signal.
+/// A signal cut short the work after the machine's run.
 struct Interrupted : std::exception {};
 
 /// Throws Interrupted if a signal was noted.

@@ -82,14 +82,14 @@ struct Point {
 /// A rectangle of cells drawn at a scale.
 struct Panel {
     Point origin;
-    double scale;  ///< pixels a cell
+    double scale;  ///< pixels per cell
     int x0;
     int y0;
     int x1;
     int y1;
 
     Point corner(int x, int y) const { return {origin.x + (x - x0) * scale, origin.y + (y - y0) * scale}; }
-    /// A buffer stands where its link comes in, everything else in the cell's middle.
+    /// A buffer is drawn where its link comes in, everything else in the middle of its cell.
     Point place(const Node& node) const {
         const Point at = corner(node.x, node.y);
         Point middle{at.x + 0.5 * scale, at.y + 0.5 * scale};
@@ -137,7 +137,7 @@ void draw_lines(std::ostringstream& svg, const Panel& panel) {
         << high.y - low.y << "' class='array'/>\n";
 }
 
-/// Cells that hold something dead; those of a knot over those of a tail.
+/// Draws the cells that hold something dead, those of a knot over those of a tail.
 void draw_cells(std::ostringstream& svg, const Panel& panel, const WaitGraph& graph) {
     for (const WaitGraph::State state : {WaitGraph::State::tail, WaitGraph::State::knot}) {
         for (const Node& node : graph.nodes()) {
@@ -168,7 +168,7 @@ void draw_edges(std::ostringstream& svg, const Panel& panel, const WaitGraph& gr
     }
 }
 
-/// The oldest knot's cells and one around them, at most so many in each direction.
+/// The oldest knot's cells and a margin of one cell, at most `most` cells in each direction.
 Panel close_up(const RunResult& result, int width, int height, Point origin, double side) {
     constexpr int most = 16;
     const std::vector<Index>& knot = result.waits.knots().front();

@@ -32,7 +32,7 @@ Json ledger_json(const RunResult& result) {
 
 std::string ledger_csv(const Ledger& ledger) {
     std::vector<Ledger::Entry> entries = ledger.entries();
-    // Cells of one cycle run in any order.
+    // Sorted, because cells of one cycle run in any order.
     std::sort(entries.begin(), entries.end(), [](const Ledger::Entry& a, const Ledger::Entry& b) {
         return std::tie(a.cycle, a.y, a.x, a.ray) < std::tie(b.cycle, b.y, b.x, b.ray);
     });

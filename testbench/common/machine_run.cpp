@@ -15,7 +15,8 @@
 namespace raycell {
 namespace {
 
-/// What a process can still get, the page cache included; free pages alone where the system doesn't say.
+/// Memory that a process can still get, the page cache included; free pages alone where the system doesn't
+/// say.
 double available_bytes() {
     std::ifstream file("/proc/meminfo");
     std::string key;
@@ -27,8 +28,8 @@ double available_bytes() {
     return double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
 }
 
-/// What grows with the array before anything is loaded: cells with their links, and the picture, which the
-/// result has once more. Of several ranks, what all on this machine need: each has a picture beside its
+/// Memory that grows with the array before anything is loaded: cells with their links, the picture, and its
+/// copy in the result. With several ranks, the needs of all on this machine: each has a picture beside its
 /// cells, and rank 0 puts them together.
 double needed_bytes(const RenderOptions& options) {
     constexpr double untimed_cell = 200;

@@ -72,7 +72,7 @@ void NewFile::close() {
     if (!written || !closed) fail("write", path_, reason_of(written ? errno : error));
 }
 
-/// Renames that are undone, unless they are all kept.
+/// Renames files; the destructor undoes all renames unless keep() was called.
 class Exchange {
   public:
     ~Exchange() {
@@ -82,7 +82,7 @@ class Exchange {
         }
     }
 
-    /// Puts a file out of the way, if it is there.
+    /// Renames a file out of the way, if it exists.
     void take_away(const std::string& path) {
         refuse_unless_regular(path);
         std::string old = path + ".old" + std::to_string(getpid());
@@ -110,8 +110,8 @@ class Exchange {
   private:
     struct Step {
         std::string path;
-        std::string old;  ///< what was there goes by this name meanwhile; empty: nothing was
-        NewFile* placed;  ///< null: nothing is there now
+        std::string old;  ///< temporary name of the earlier file; empty: there was none
+        NewFile* placed;  ///< null: no new file is at this path
     };
     std::vector<Step> steps_;
 };

@@ -200,7 +200,7 @@ void OptionTable::costs(CostTable& table) {
     app_.add_option_function<std::vector<std::string>>(
             "--cost", set, "cycles of an operation; may come several times. " + names)
         ->check(CLI::Validator(check, "NAME=CYCLES"))
-        ->allow_extra_args(false);  // one entry each time; what follows may be the scene
+        ->allow_extra_args(false);  // one entry each time: the next word may be the scene
     entries_.push_back({"cost", [&table] {
                             nlohmann::ordered_json list = nlohmann::ordered_json::array();
                             for (const auto& [name, member] : CostTable::entries()) {

@@ -34,13 +34,13 @@ struct CycleWindow {
     std::uint64_t to = open;
 };
 
-/// What is to be seen of a run as waveforms.
+/// What waveforms show of a run.
 struct ProbeOptions {
     std::vector<CellRange> cells;
     CycleWindow window;
-    bool on_deadlock = false;      ///< of a deadlock's knot alone
+    bool on_deadlock = false;      ///< only the knot's cells, if the run deadlocks
     std::int64_t last = 2000;      ///< cycles before the deadlock formed
-    std::int64_t limit_mb = 1024;  ///< of a dump, 10^6 bytes
+    std::int64_t limit_mb = 1024;  ///< largest dump, 10^6 bytes
 };
 
 /// Registers options with CLI11 and remembers how to read their effective values back.
@@ -62,8 +62,8 @@ class OptionTable {
                 const std::string& help);
     /// --cells WxH
     void size(const std::string& name, int& width, int& height, const std::string& help);
-    /// --NAME X,Y or X0..X1,Y0..Y1, may come several times: cells of the array. Whether they lie inside it is
-    /// for the command to check.
+    /// --NAME X,Y or X0..X1,Y0..Y1, may come several times: cells of the array. The command must check that
+    /// they lie inside it.
     void cells(const std::string& name, std::vector<CellRange>& target, const std::string& help);
     /// --NAME P or P,Q: two shares from 0 to 1; P alone leaves Q at 0.
     void shares(const std::string& name, double& p, double& q, const std::string& help);
@@ -88,9 +88,9 @@ class OptionTable {
 
 /// What runs the cells.
 enum class Hosts {
-    automatic,  ///< modules for the cells that somebody looks at, tiles for the others
-    cell,       ///< a module each
-    tile        ///< tiles, but for --detail
+    automatic,  ///< modules for cells of --detail, --probe and --golden, tiles for the others
+    cell,       ///< a module for each cell
+    tile        ///< tiles, but modules for the cells of --detail
 };
 
 struct RenderOptions {
@@ -112,12 +112,12 @@ struct RenderOptions {
     std::string config;             ///< file of options; empty: none
     std::string load_array;         ///< file of a loaded array to start with; empty: none
     std::vector<CellRange> golden;  ///< cells whose messages are written
-    std::vector<int> rank_rows;     ///< first rows of the ranks after the first; empty: even
+    std::vector<int> rank_rows;     ///< first rows of the bands after the first; empty: even bands
 };
 
-/// Which scene, from where, on how many cells.
+/// The scene, the view, the size of the array.
 void add_placement_options(OptionTable& table, RenderOptions& options);
-/// The options that render and truth share: the same, files, ray tree.
+/// The options that render and truth share: placement, files, ray tree.
 void add_scene_options(OptionTable& table, RenderOptions& options);
 /// What a cell makes of a span: depth levels, hit test, normals, shadow bits, capacity, intensities.
 void add_voxel_options(OptionTable& table, PictureSettings& picture);
@@ -125,13 +125,13 @@ void add_voxel_options(OptionTable& table, PictureSettings& picture);
 void add_word_options(OptionTable& table, NumberSettings& numbers);
 /// Bits of a link, clock, stalls, limit of cycles.
 void add_link_options(OptionTable& table, MachineSettings& machine);
-/// Ray store, buffers, networks, recovery, and the links' own.
+/// Ray store, buffers, networks, recovery, and the link options.
 void add_communication_options(OptionTable& table, MachineSettings& machine);
 /// What runs the cells.
 void add_granularity_options(OptionTable& table, RenderOptions& options);
-/// render's own, for watching rays.
+/// Options of render alone, for watching rays.
 void add_watch_options(OptionTable& table, RenderOptions& options);
-/// The rest of render's.
+/// The other options of render.
 void add_machine_options(OptionTable& table, RenderOptions& options);
 /// Loaded arrays as files.
 void add_array_options(OptionTable& table, RenderOptions& options);

@@ -25,7 +25,7 @@ namespace raycell {
 
 namespace {
 
-/// OpenEXR's own stream swallows what fails in its destructor; stdio's error flag does not.
+/// Replaces OpenEXR's own stream, whose destructor hides errors; stdio's error flag keeps them.
 class ExrStream : public Imf::OStream {
   public:
     ExrStream(std::FILE* file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
@@ -72,7 +72,7 @@ constexpr Channel channels[] = {
     {"hops", Imf::UINT, offsetof(ExrRow::Sample, hops)},
     {"postponed", Imf::UINT, offsetof(ExrRow::Sample, postponed)},
 };
-constexpr int colour_channels = 3;  ///< the first of the list, without which there is no picture
+constexpr int colour_channels = 3;  ///< the first of the list, which every picture must have
 
 ExrRow::Sample to_sample(const Pixel& p) {
     return {float(p.colour.r), float(p.colour.g), float(p.colour.b), float(p.depth), float(p.normal.x),
@@ -92,7 +92,7 @@ Pixel to_pixel(const ExrRow::Sample& s) {
     return pixel;
 }
 
-/// A frame buffer whose every line is `row`; its first sample is the pixel with x = left.
+/// A frame buffer that maps every line to `row`, whose first sample is the pixel with x = left.
 Imf::FrameBuffer buffer_of(ExrRow& row, int left, const Imf::ChannelList& wanted) {
     Imf::FrameBuffer buffer;
     constexpr std::size_t stride = sizeof(ExrRow::Sample);
@@ -163,7 +163,7 @@ std::uint8_t to_byte(double value, int x, int y, const std::string& path) {
     return std::uint8_t(std::lround(std::clamp(value, 0.0, 1.0) * 255));
 }
 
-/// libpng's description of a picture; freed on every way out.
+/// libpng's description of a picture, freed by the destructor.
 struct PngImage : png_image {
     PngImage() : png_image() { version = PNG_IMAGE_VERSION; }
     ~PngImage() { png_image_free(this); }

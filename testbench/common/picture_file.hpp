@@ -22,7 +22,8 @@ class NewFile;
 ///   N.X N.Y N.Z    float  normal of the first hit, turned to the ray, cell coordinates; 0 for background
 ///   polygon        uint   id of the first hit; 4294967295 for background
 ///   cycle          uint   trace cycle in which the pixel was complete (timed engine only)
-///   hops           uint   hops of all rays and returns of the pixel's tree
+///   hops           uint   hops of all rays and answers of the pixel's tree
+///   postponed      uint   times that a ray of the tree was destroyed and sent again (timed engine only)
 void write_exr(const Picture& picture, NewFile& file);
 void write_exr(const Picture& picture, const std::string& path);
 
@@ -31,9 +32,8 @@ void write_exr(const Picture& picture, const std::string& path);
 Picture read_exr(const std::string& path, std::vector<std::string>* absent = nullptr);
 
 /// Writes colours with 8 bits per channel, clamped to [0, 1] and rounded to the nearest of 256 steps. No
-/// transfer curve is applied: scene files of 1990 give colours as the values that the display is sent, and
-/// the PNG says the same (sRGB chunk), so it shows as its time would have shown it. NaN is an error that
-/// names the pixel.
+/// transfer curve is applied: scene files of 1990 give the values that the display is sent, and the PNG
+/// declares them as such (sRGB chunk). Throws for NaN, naming the pixel.
 void write_png(const Picture& picture, NewFile& file);
 void write_png(const Picture& picture, const std::string& path);
 

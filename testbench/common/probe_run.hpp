@@ -10,14 +10,14 @@
 
 namespace raycell {
 
-/// Throws UsageError for probes outside the array, without a timed engine, or that contradict each other.
+/// Throws UsageError for probes outside the array, with the untimed engine, or that contradict each other.
 void check_probes(const RenderOptions& options);
 
 class ProbeRun {
   public:
     /// Begins PREFIX.vcd and puts the probes on the machine. Machine and outputs must outlive it.
     ProbeRun(const RenderOptions& options, Machine& machine, OutputSet& outputs);
-    /// The run is over.
+    /// Call when the run is over.
     void finish();
     /// Writes PREFIX.gtkw.
     void write(OutputSet& outputs);

@@ -118,7 +118,7 @@ std::string RayWatch::what_happened(const Cell& cell, CellEvent event, std::uint
         case CellEvent::silent:
             return "reaches its source, ends without an answer";
         case CellEvent::load:
-        case CellEvent::postpone:  // the answer that says so has told it
+        case CellEvent::postpone:  // reported as the notice, an answer
             break;
     }
     return "";

@@ -15,21 +15,22 @@
 
 namespace raycell {
 
-/// Writes one line per event: cycle, cell, ray, what happened, indented by generation. Events come by cycle,
-/// then by cell, row by row (the exterior after all of them), then in the order in which the cell did them,
-/// so the text does not depend on the order in which cells run. What a ray or its answer waited stands in
-/// the line of the event that ended it, or in one of its own.
+/// Writes one line per event: cycle, cell, ray, what happened, indented by generation. Events are sorted by
+/// cycle, then by cell, row by row (the exterior after all cells), then in the order in which the cell did
+/// them, so the text does not depend on the order in which cells run. The wait of a ray or its answer is in
+/// the line of the event that ended it, or in a line of its own.
 class RayWatch : public CellObserver {
   public:
-    /// `width`: of the array, cells.
+    /// `width`, `height`: of the array, cells.
     RayWatch(std::ostream& out, Networks networks, int width, int height)
         : out_(out), networks_(networks), width_(width), height_(height) {}
 
-    /// A ray and its descendants.
+    /// Watches a ray and its descendants.
     void watch_ray(std::uint64_t id) { roots_.emplace(id, false); }
-    /// All rays of pixel (x, y)'s tree; verdicts cast before tracing do not belong to a tree.
+    /// Watches all rays of the tree of pixel (x, y). Precast rays belong to no tree.
     void watch_pixel(int x, int y) { pixels_.insert(index(x, y)); }
-    /// At the end of the run: the last cycle's events, and a line per ray. `now`: the run's last cycle.
+    /// Call at the end of the run: writes the events of the last cycle, and a line per ray. `now`: the run's
+    /// last cycle.
     void finish(Cycle now);
 
     void cell_event(const Cell& cell, Cycle now, CellEvent event, std::uint64_t ray,
@@ -52,7 +53,8 @@ class RayWatch : public CellObserver {
         std::uint64_t ray_hops = 0;
         std::uint64_t answer_hops = 0;
         std::uint64_t postponed = 0;
-        /// On their way: memo's rays of one pixel from voxels of the same number share an id.
+        /// Rays of this id on their way. With memo, the rays of one pixel from voxels of the same number
+        /// share an id.
         int open = 1;
         bool answering = false;  ///< the ray has ended, its answer is on its way
         std::array<Cycle, stall_causes + 1> waited{};
@@ -74,9 +76,9 @@ class RayWatch : public CellObserver {
     Networks networks_;
     int width_;
     int height_;
-    std::map<std::uint64_t, bool> roots_;  ///< asked for by id, and whether it came
+    std::map<std::uint64_t, bool> roots_;  ///< watched by id, and whether it was launched
     std::unordered_set<std::uint64_t> pixels_;
-    std::unordered_map<std::uint64_t, std::size_t> known_;  ///< ray to its place in lives_
+    std::unordered_map<std::uint64_t, std::size_t> known_;  ///< index of a ray in lives_
     std::vector<Life> lives_;                               ///< in the order of their first launch
     Cycle cycle_ = 0;                                       ///< of lines_
     std::vector<Line> lines_;
@@ -87,7 +89,7 @@ struct RenderOptions;
 /// watched.
 std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& out);
 
-/// The reverse; false if it is not of this form.
+/// Reads a ray's id from PIXEL/PART, the form of ray_name(). False if the word has another form.
 bool parse_ray(const std::string& word, std::uint64_t& id);
 
 }  // namespace raycell

@@ -19,7 +19,7 @@ Json stage(const StageStatistics& s, Cycle cycles) {
             {"utilisation", cycles > 0 ? double(s.busy_cycles) / double(cycles) : 0.0}};
 }
 
-/// One list per quantity: means over each bucket's cycles, or what happened in it.
+/// One list per quantity, with a value for each bucket: a mean over its cycles or a count of events.
 Json activity(const Activity& a) {
     using Bucket = Activity::Bucket;
     const auto mean = [&](std::uint64_t Bucket::*sum) {
@@ -45,7 +45,7 @@ Json activity(const Activity& a) {
             {"postponed", events(&Bucket::postponed)}};
 }
 
-/// Of the loading.
+/// The activity while loading.
 Json load_activity(const Activity& a) {
     Json hops = Json::array();
     Json loaded = Json::array();
@@ -60,7 +60,8 @@ Json load_activity(const Activity& a) {
             {"cells_loaded", loaded}};
 }
 
-/// What words cost, by cause. What a run counted is that of its part; the rest is the scene's.
+/// Losses by cause, due to words. `pixels`, `ties` and `exterior_rays` count only what the run did; the rest
+/// follows from the scene.
 Json losses_report(const RunResult& result, const CellScene& scene, const PictureSettings& picture) {
     const Context context(scene, picture);
     const Losses losses = losses_of(context);

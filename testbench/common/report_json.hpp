@@ -9,12 +9,12 @@
 
 namespace raycell {
 
-/// Everything but config, accuracy and the model's memory.
+/// The whole report but for `config`, `accuracy`, `model`, `ranks` and `losses.sample`.
 nlohmann::ordered_json report(const RunResult& result, const CellScene& scene, const PictureSettings& picture,
                               const MachineSettings& machine);
 nlohmann::ordered_json report(const Accuracy& accuracy);
 
-/// JSON as text for a file; bytes of names that are no UTF-8 are replaced, not refused.
+/// JSON as text for a file; bytes of names that are not UTF-8 are replaced.
 std::string to_text(const nlohmann::ordered_json& json);
 
 /// A 64-bit hash as 16 hexadecimal digits: JSON's numbers can't hold it.

@@ -1,4 +1,4 @@
-// What render and truth do first: read the scene, place it, say what was odd about it.
+// What render and truth do first: read the scene, place it, warn of oddities.
 #pragma once
 
 #include "model/geometry/placement.hpp"
@@ -7,8 +7,8 @@
 
 namespace raycell {
 
-/// Reads and places the scene of the options; warnings go to standard error. Throws InputError, UsageError;
-/// the latter also where a file that is read would be overwritten (spare_inputs()).
+/// Reads and places the scene of the options; warnings go to standard error. Throws InputError and
+/// UsageError, the latter also if an input file would be overwritten (spare_inputs()).
 CellScene read_and_place(const RenderOptions& options, const OutputSet& outputs);
 
 /// Throws UsageError if an announced file is one that the options have read: scene, view, array or

@@ -11,19 +11,19 @@ namespace raycell {
 namespace {
 
 volatile std::sig_atomic_t noted = 0;
-volatile std::sig_atomic_t noting = 0;  ///< NotedSignals alive
-volatile std::sig_atomic_t held = 0;    ///< HeldSignals alive
+volatile std::sig_atomic_t noting = 0;  ///< number of NotedSignals alive
+volatile std::sig_atomic_t held = 0;    ///< number of HeldSignals alive
 volatile std::sig_atomic_t waiting = 0;
 volatile std::sig_atomic_t published = 0;
 
-// Read by the handler; changed only while signals are held. Never destroyed: a signal may come at the very
-// end.
+// Read by the handler; changed only while signals are held. Never destroyed, since a signal may come at the
+// very end.
 pthread_t handling_thread;
 std::vector<const char*>& unfinished = *new std::vector<const char*>;
 std::string& message_without_files = *new std::string;
 std::string& message_with_files = *new std::string;
 
-/// Only what a signal handler may call.
+/// Calls only what a signal handler may call.
 [[noreturn]] void end_at_once() {
     const std::string& message = published ? message_with_files : message_without_files;
     const auto ignored = write(STDERR_FILENO, message.data(), message.size());

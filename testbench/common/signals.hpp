@@ -8,15 +8,16 @@ namespace raycell {
 
 constexpr int exit_interrupted = 5;
 
-/// Installs the handlers, for the rest of the program. From then on a signal ends it at once with
-/// exit_interrupted and one message; files begun but not published are removed. `program` names it in the
-/// message; a silent one prints none. SIGHUP stays ignored where it was (nohup). A full pipe or a file that
-/// grows too large (SIGPIPE, SIGXFSZ) is an error of the write, not the end of the program.
+/// Installs the signal handlers for the rest of the program. From then on a signal ends the program at once
+/// with exit_interrupted and one message, and files that are begun but not published are removed. `program`
+/// names it in the message; if `silent`, none is printed. SIGHUP stays ignored where it was (nohup). A closed
+/// pipe (SIGPIPE) or a file that grows too large (SIGXFSZ) is an error of the write, not the end of the
+/// program.
 ///
-/// The thread that calls this is the one that handles signals, and the only one that may use the rest.
+/// Signals are handled by the thread that calls this; no other thread may use the rest of this file.
 void catch_signals(const std::string& program, bool silent = false);
 
-/// While one lives, the first signal is only noted; the second ends the program as above.
+/// While one lives, the first signal is only noted; a second one ends the program as above.
 class NotedSignals {
   public:
     NotedSignals();
@@ -28,7 +29,7 @@ class NotedSignals {
 /// Not 0 once a signal was noted.
 const volatile std::sig_atomic_t* noted_signal();
 
-/// While one lives, signals wait.
+/// While one lives, signals wait until it is destroyed.
 class HeldSignals {
   public:
     HeldSignals();
@@ -37,14 +38,14 @@ class HeldSignals {
     HeldSignals& operator=(const HeldSignals&) = delete;
 };
 
-/// A file to be removed if a signal ends the program; `path` must stay where it is until it is dropped.
+/// Registers a file that is removed if a signal ends the program. `path` must stay valid until it is dropped.
 void add_unfinished(const char* path);
 void drop_unfinished(const char* path);
 
-/// Ends the program where it stands, without unwinding; unfinished files are removed.
+/// Ends the program at once, without unwinding, and removes unfinished files.
 [[noreturn]] void end_without_files(int code);
 
-/// From now on the message says that the files are written.
+/// After this, the message says that the files were written.
 void note_published();
 
 }  // namespace raycell

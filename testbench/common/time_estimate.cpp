@@ -7,19 +7,19 @@
 namespace raycell {
 namespace {
 
-// What the simulator takes for each of what is foretold, nanoseconds, on one core of a server. The terms are
-// those that described 54 runs of the Standard Procedural Databases at 64x64 to 256x256 cells to within a
-// factor of 1.7; those of rays were then fitted again, to teapot-s4 and balls-s2 at 64x64 to 512x512 cells
-// (docs/measured/bench_growth.md), when hops had become cheaper.
+// Cost of each quantity of a Forecast in the simulator, nanoseconds, on one core of a server. The terms
+// described 54 runs of the Standard Procedural Databases at 64x64 to 256x256 cells to within a factor of 1.7.
+// When hops had become cheaper, those of rays were fitted again to teapot-s4 and balls-s2 at 64x64 to 512x512
+// cells (docs/measured/bench_growth.md).
 constexpr double load_hop = 150;
 constexpr double load_step = 170;
 constexpr double load_cell = 2000;
-constexpr double ray_hop = 230;       ///< with one voxel to be looked at, where the array is in the caches
-constexpr double ray_voxel = 10;      ///< for every voxel of a mean cell
-constexpr double ray_doubling = 10;   ///< for every doubling of the array above ...
-constexpr double small_array = 4096;  ///< ... so many cells
-constexpr double modules = 2.5;       ///< so many times where every cell is a module
-constexpr double rank = 0.85;         ///< of a rank's time goes into rays, the rest waits (docs/use/ranks.md)
+constexpr double ray_hop = 230;       ///< with one voxel to look at and the array in the caches
+constexpr double ray_voxel = 10;      ///< per voxel of the mean cell
+constexpr double ray_doubling = 10;   ///< per doubling of the array above small_array
+constexpr double small_array = 4096;  ///< cells
+constexpr double modules = 2.5;       ///< factor if every cell is a module
+constexpr double rank = 0.85;  ///< share of a rank's time for rays, the rest is waiting (docs/use/ranks.md)
 
 }  // namespace
 
@@ -31,7 +31,7 @@ ExpectedSeconds expected_seconds(const Forecast& forecast, std::size_t cells, bo
     ExpectedSeconds seconds;
     seconds.load =
         each * (load_hop * forecast.load_hops + load_step * forecast.load_steps + load_cell * double(cells));
-    // Loading gains nothing by ranks.
+    // Ranks do not speed up loading.
     const double rays = each * hop / (ranks > 1 ? rank * ranks : 1);
     seconds.precast = rays * forecast.precast_hops;
     seconds.trace = rays * forecast.trace_hops;
@@ -72,7 +72,7 @@ std::string expectation(const Forecast& forecast, const ExpectedSeconds& seconds
 }
 
 double seconds_left(const RunProgress& progress) {
-    // Of less, nothing can be said.
+    // Below these, no estimate is possible.
     constexpr double least_share = 0.005;
     constexpr double least_seconds = 2;
     if (progress.share < least_share || progress.seconds < least_seconds) return -1;

@@ -1,4 +1,4 @@
-// How long a run takes: told before a long one, and while it goes on.
+// Estimates of how long a run takes, before a long one and during a run.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ struct ExpectedSeconds {
     double sum() const { return load + precast + trace; }
 };
 
-/// By what hops cost on the machine on which the constants were measured (see the source). Without what it
-/// takes to build the machine. `ranks`: processes that share the array, each on a core of its own.
+/// Estimates from the cost of hops on the machine where the constants were measured (see the source);
+/// building the machine is not included. `ranks`: processes that share the array, each on a core of its own.
 ExpectedSeconds expected_seconds(const Forecast& forecast, std::size_t cells, bool every_cell_is_a_module,
                                  int ranks = 1);
 
@@ -31,10 +31,10 @@ std::string expectation(const Forecast& forecast, const ExpectedSeconds& seconds
 /// "40 s", "12 min", "3.5 h", "2.1 days".
 std::string duration(double seconds);
 
-/// Seconds that a phase will go on as it went so far; negative: nothing can be said yet.
+/// Seconds until a phase ends if it goes on as before; negative: too early to say.
 double seconds_left(const RunProgress& progress);
 
-/// The line of progress, without its end.
+/// The progress line, without its line end.
 std::string progress_line(const RunProgress& progress);
 
 }  // namespace raycell
