@@ -13,8 +13,7 @@ namespace raycell {
 /// Throws UsageError if the options don't allow loaded arrays to be saved or used.
 void check_arrays(const RenderOptions& options);
 
-/// The loaded arrays of one run. --load-array is read before the machine is built, so that a file is refused
-/// at once.
+/// The loaded arrays of one run; --load-array is read, and refused, before the machine is built.
 class ArrayFiles {
   public:
     /// Reads --load-array, if given. Throws UsageError for a file of another scene, size or other settings

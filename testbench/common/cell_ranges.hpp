@@ -9,8 +9,7 @@
 
 namespace raycell {
 
-/// Throws UsageError for a range that reaches outside the array. `option`: its name for the message, as
-/// "--probe".
+/// Throws UsageError for a range that reaches outside the array; `option` as "--probe".
 void check_inside(const std::string& option, const std::vector<CellRange>& ranges,
                   const PictureSettings& picture);
 

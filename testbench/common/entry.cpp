@@ -55,8 +55,7 @@ void flush_output() {
     if (std::fflush(stdout) != 0 || !std::cout) throw std::runtime_error("standard output can't be written");
 }
 
-/// Prints the message; with several ranks, rank 0 prints what all have in common. Returns the process's exit
-/// code.
+/// With several ranks, rank 0 prints what all would print. Returns the process's exit code.
 int report_failure(const std::string& message, int code) {
     const int rank = launched_ranks().rank;
     if (rank == 0) {

@@ -8,8 +8,8 @@
 
 namespace raycell {
 
-/// While it lives, a first signal ends the machine's run and a second one the program. Keep it until the
-/// run's results are published.
+/// While it lives, the first signal ends the run, a second one the program. Lives until results are
+/// published.
 class Interruptible {
   public:
     explicit Interruptible(Machine& machine) { machine.interrupt_by(noted_signal()); }

@@ -15,8 +15,7 @@
 namespace raycell {
 namespace {
 
-/// Memory that a process can still get, the page cache included; free pages alone where the system doesn't
-/// say.
+/// Memory available to a process, page cache included; only free pages where the system doesn't say.
 double available_bytes() {
     std::ifstream file("/proc/meminfo");
     std::string key;

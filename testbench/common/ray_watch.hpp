@@ -29,8 +29,7 @@ class RayWatch : public CellObserver {
     void watch_ray(std::uint64_t id) { roots_.emplace(id, false); }
     /// Watches all rays of the tree of pixel (x, y). Precast rays belong to no tree.
     void watch_pixel(int x, int y) { pixels_.insert(index(x, y)); }
-    /// Call at the end of the run: writes the events of the last cycle, and a line per ray. `now`: the run's
-    /// last cycle.
+    /// Writes the events of the last cycle and a line per ray. `now`: the run's last cycle.
     void finish(Cycle now);
 
     void cell_event(const Cell& cell, Cycle now, CellEvent event, std::uint64_t ray,

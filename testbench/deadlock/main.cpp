@@ -57,7 +57,7 @@ void add_options(OptionTable& table, Options& options) {
     table.flag("quiet", options.run.quiet, "no progress, no summary");
 }
 
-/// Whether what is finished of the picture is the untimed machine's, bit for bit.
+/// Whether all finished pixels equal the untimed machine's, bit for bit.
 bool equals(const Picture& picture, const Picture& golden) {
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
         const Pixel& a = picture.pixels[i];
@@ -136,7 +136,7 @@ int run(Options& options, const OptionTable& table) {
     return equal ? exit_code(result.verdict) : exit_comparison;
 }
 
-/// The command line's arguments behind those of --config, so that the former take precedence.
+/// The arguments of --config followed by those of the command line, which so take precedence.
 std::vector<std::string> with_configuration(const std::vector<std::string>& words, const CLI::App& app) {
     const std::string path = configuration_named(words);
     if (path.empty()) return {words.begin() + 1, words.end()};

@@ -64,7 +64,7 @@ void CellBench::make_links() {
         const int x = setup_.x + step_x(Side(side));
         const int y = setup_.y + step_y(Side(side));
         const bool border = x < 0 || x >= setup_.picture.width || y < 0 || y >= setup_.picture.height;
-        // By its name a link draws its random stalls; those of incoming messages are in their cycles already.
+        // A link draws its random stalls by its name. Those of incoming messages are in their cycles already.
         out_[i] = make(environment_.classes.count,
                        border ? "border_" + at + ".out" : "cell_" + at + "." + name_of_side(side));
         environment_.stall(*out_[i], out_[i]->name());
@@ -81,7 +81,6 @@ void CellBench::make_links() {
 }
 
 // ---- what the cell is told
-// --------------------------------------------------------------------------------------
 
 void CellBench::schedule_next() {
     if (next_ == stimuli_.size() || given_up_) return;
@@ -95,7 +94,7 @@ void CellBench::schedule_next() {
     }
 }
 
-/// Before anybody runs in a cycle: phases, and whether new rays are held back.
+/// Applies phase and drain events, before anything else runs in the cycle.
 bool CellBench::begin_cycle(void* self, Cycle now) {
     auto& bench = *static_cast<CellBench*>(self);
     for (; bench.next_change_ < bench.stimuli_.size(); ++bench.next_change_) {
@@ -174,7 +173,8 @@ void CellBench::free(const GoldenEvent& event) {
     if (message.kind == Message::Kind::load) environment_.pools.loads.give_back(message.load);
 }
 
-/// What of a message would reach for something that is not there.
+/// Why a message must not be sent to the cell, because it refers to something that does not exist; else
+/// empty.
 std::string CellBench::objection(const Message& message, int index) const {
     const BufferClasses& classes = environment_.classes;
     const auto pixels = std::uint64_t(environment_.width()) * std::uint64_t(environment_.height());
@@ -231,8 +231,7 @@ std::string CellBench::objection_to_answer(const Answer& answer) const {
     return answer.slot < cell.ray_store().touched() ? "" : "an answer for a slot that was never used";
 }
 
-// ---- what it does
-// ----------------------------------------------------------------------------------------------
+// ---- what the cell does
 
 void CellBench::report(const GoldenEvent& event, const std::string& what) {
     if (failures_.size() >= most_failures_) return;
@@ -315,7 +314,7 @@ std::vector<std::string> CellBench::run(std::size_t most) {
     most_failures_ = most;
     schedule_next();
     sc_core::sc_start();
-    if (given_up_) return failures_;  // what is missing after that is no wonder
+    if (given_up_) return failures_;  // missing events would only be consequences
     std::vector<const GoldenEvent*> missing;
     for (const auto& [key, queue] : expected_) {
         if (!queue.empty()) missing.push_back(&queue.front());

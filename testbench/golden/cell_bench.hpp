@@ -1,4 +1,4 @@
-// One cell alone: a driver plays its neighbours, and what it does is compared with what is expected.
+// A bench for one cell: a driver plays its neighbours and compares what the cell does with what is expected.
 #pragma once
 
 #include <array>
@@ -13,22 +13,22 @@
 
 namespace raycell {
 
-/// A cell with links on its sides, as an array would have it. The driver does what `events` tell the cell, in
-/// their cycles; whatever the cell sends (out) or takes from its buffers (take) must be the next expected
-/// event of that buffer, in the same cycle, word for word; a token "*" stands for anything. Build all benches
-/// of a process before the first run.
+/// A cell with links on its sides, as in an array. The driver applies the events that the cell is told, in
+/// their cycles. Whatever the cell sends (out) or takes from a buffer (take) must be the next expected event
+/// of that buffer, in the same cycle, token for token; a token "*" matches anything. Build all benches of a
+/// process before the first run.
 class CellBench : public sc_core::sc_module, public Client, private LinkObserver {
   public:
     SC_HAS_PROCESS(CellBench);
-    /// `events` in the order of their cycles; nothing is run after cycle `last`. Throws GoldenError for
-    /// events that the cell has no buffers for.
+    /// `events` in the order of their cycles; nothing runs after cycle `last`. Throws GoldenError for events
+    /// of buffers that the cell does not have.
     CellBench(sc_core::sc_module_name name, const CellSetup& setup, std::vector<GoldenEvent> events,
               Cycle last);
 
-    /// Runs to the end and returns what was wrong, in the order of its cycles, a line each; `most` lines at
-    /// most.
+    /// Runs to the end and returns what was wrong, a line each, `most` lines at most: events that differed,
+    /// in the order of cycles, then those that never came, then the pixel.
     std::vector<std::string> run(std::size_t most = 10);
-    /// Comparisons made so far: messages and takes that were as expected.
+    /// Number of messages, takes and pixels so far that were as expected.
     std::uint64_t matched() const { return matched_; }
 
     Environment& environment() { return environment_; }
@@ -66,8 +66,8 @@ class CellBench : public sc_core::sc_module, public Client, private LinkObserver
     std::array<std::unique_ptr<Link>, side_count> out_;
     std::unique_ptr<Link> load_;
     std::vector<GoldenEvent> stimuli_;
-    std::size_t next_change_ = 0;  ///< first of the stimuli that no cycle has looked at for a phase
-    std::size_t next_ = 0;         ///< first of the stimuli that is still to be driven
+    std::size_t next_change_ = 0;  ///< first stimulus not yet checked for a phase or drain
+    std::size_t next_ = 0;         ///< first stimulus not yet driven
     std::map<Key, std::deque<GoldenEvent>> expected_;
     std::vector<GoldenEvent> pixels_;
     Cycle last_;
@@ -75,8 +75,8 @@ class CellBench : public sc_core::sc_module, public Client, private LinkObserver
     std::vector<std::string> failures_;
     std::size_t most_failures_ = 10;
     std::uint64_t matched_ = 0;
-    bool shadow_bits_ = false;  ///< they have been set to lit: loading is over
-    bool given_up_ = false;     ///< what it is told makes no sense any more
+    bool shadow_bits_ = false;  ///< they were set to lit, since loading is over
+    bool given_up_ = false;     ///< the stimuli no longer make sense
 };
 
 }  // namespace raycell

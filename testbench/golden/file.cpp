@@ -12,7 +12,7 @@ constexpr std::array<const char*, 7> whats{"in", "free", "phase", "drain", "out"
 constexpr std::array<const char*, 5> sides{"east", "south", "west", "north", "load"};
 constexpr Cycle most_cycles = Cycle(1) << 48;
 
-/// Fails with the file's name and the line.
+/// Throws GoldenError with the file's name and the line.
 [[noreturn]] void fail(const std::string& name, int line, const std::string& what) {
     throw GoldenError(name + ":" + std::to_string(line) + ": " + what);
 }
@@ -144,7 +144,7 @@ GoldenFile read_golden(std::istream& in, const std::string& name) {
         } else {
             file.events.push_back(EventReader(name, number, tokens).read());
             const GoldenEvent& event = file.events.back();
-            if (event.what == GoldenEvent::What::pixel) continue;  // told once the run is over
+            if (event.what == GoldenEvent::What::pixel) continue;  // written after the run, so out of order
             if (event.cycle < before)
                 fail(name, number,
                      "cycle " + tokens[0] + " comes after cycle " + std::to_string(before) +

@@ -11,19 +11,19 @@
 
 namespace raycell {
 
-/// One line behind the head: something that the cell is told (in, free, phase, drain) or that it does (out,
+/// One line after the head: something that the cell is told (in, free, phase, drain) or that it does (out,
 /// take, pixel).
 struct GoldenEvent {
     enum class What : std::uint8_t { in, free, phase, drain, out, take, pixel };
-    static constexpr int load_link = side_count;  ///< a side of its own: the row's distributor
+    static constexpr int load_link = side_count;  ///< an extra side: the link from the row's distributor
     What what = What::in;
     Cycle cycle = 0;
     int side = 0;
     int index = 0;   ///< buffer class
-    int cycles = 0;  ///< in, out: that the message takes over the link
+    int cycles = 0;  ///< in, out: cycles that the message takes on the link
     std::vector<std::string>
-        tokens;    ///< the message; of a pixel its colour, of a phase its name, of drain 0 or 1
-    int line = 0;  ///< of the file, 0: none
+        tokens;    ///< the message; for a pixel its colour, for a phase its name, for drain 0 or 1
+    int line = 0;  ///< line of the file; 0: none
     bool expected() const { return what >= What::out; }
 };
 
@@ -41,7 +41,8 @@ struct CellSetup {
     std::array<bool, side_count> linked{};  ///< sides with links, to a neighbour or to the exterior
 };
 
-/// The setup as lines, the configuration (TOML) in front; `context` is one of the same settings and scene.
+/// The setup as lines, after those of the configuration (TOML). `context` must have the same settings and
+/// scene.
 std::string setup_text(const CellSetup& setup, const Context& context, const std::string& configuration);
 
 struct GoldenFile {
@@ -51,18 +52,18 @@ struct GoldenFile {
         int number = 0;
         std::vector<std::string> tokens;
     };
-    std::vector<Line> head;  ///< what is left of it to be read
+    std::vector<Line> head;  ///< lines that read_setup() has to read
     std::vector<GoldenEvent> events;
     Cycle last = 0;  ///< cycle in which the record ends
 };
 
-/// Reads all lines, their numbers still as text; `name` is for messages. Throws GoldenError "NAME:LINE: what,
-/// what was allowed".
+/// Reads all lines, leaving their numbers as text; `name` is for messages. Throws GoldenError "NAME:LINE:
+/// what, what was allowed".
 GoldenFile read_golden(std::istream& in, const std::string& name);
 
-/// Reads the head's numbers. `setup` has picture and machine already, as the configuration says. Throws
-/// GoldenError where something is missing, formats are others, or there are no links where the cell would use
-/// them.
+/// Reads the numbers of the head. `setup` must have picture and machine already, from the configuration.
+/// Throws GoldenError if something is missing, a format differs, or the links are not those that the cell
+/// uses.
 void read_setup(const GoldenFile& file, CellSetup& setup);
 
 }  // namespace raycell

@@ -110,7 +110,7 @@ class Reader {
     }
     const Words& words_;
     const std::vector<std::string>& tokens_;
-    std::size_t at_ = 1;  ///< behind the kind
+    std::size_t at_ = 1;  ///< after the kind
 };
 
 class Names {
@@ -139,8 +139,8 @@ void vector(A& a, const std::array<const char*, 3>& names, V& v, const Format& f
     for (int axis = 0; axis < 3; ++axis) a.word(names[std::size_t(axis)], v[axis], format);
 }
 
-/// An id is the pixel whose tree the ray belongs to, and its branch there: the model's own, no field of a
-/// message.
+/// A ray's id: the pixel whose tree it belongs to and its branch there. Only the model has it; the cell's
+/// messages have no such field.
 template <typename A, typename Id>
 void id_of(A& a, Id& id) {
     std::uint64_t pixel = pixel_of(id);

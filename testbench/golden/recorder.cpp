@@ -12,7 +12,7 @@ GoldenRecorder::GoldenRecorder(sc_core::sc_module_name name, Machine& machine, s
       targets_(std::move(targets)),
       configuration_(std::move(configuration)) {}
 
-/// The ports of modules know their links only now.
+/// Attaches here, because modules' ports know their links only now.
 void GoldenRecorder::start_of_simulation() {
     for (std::size_t target = 0; target < targets_.size(); ++target) attach(target);
 }

@@ -11,19 +11,19 @@
 
 namespace raycell {
 
-/// Writes while the run goes on. Make it after the machine and before the first run; watching changes
-/// nothing.
+/// Writes while the run goes on. Make it after the machine and before the first run. It changes nothing in
+/// the run.
 class GoldenRecorder : public sc_core::sc_module, public LinkObserver, public CellObserver {
   public:
     struct Target {
         const Cell* cell;
-        std::FILE* file;  ///< stays the caller's
+        std::FILE* file;  ///< owned by the caller
     };
-    /// `configuration`: TOML that gives the run's settings again.
+    /// `configuration`: TOML that reproduces the run's settings.
     GoldenRecorder(sc_core::sc_module_name name, Machine& machine, std::vector<Target> targets,
                    std::string configuration);
 
-    /// The run is over: writes the pixels and ends the records.
+    /// Call when the run is over: writes the pixels and ends the records.
     void finish();
 
     void cell_event(const Cell&, Cycle, CellEvent, std::uint64_t, std::uint32_t) override {}

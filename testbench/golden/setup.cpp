@@ -9,7 +9,7 @@
 namespace raycell {
 namespace {
 
-/// Visits the numbers of one line, as text.
+/// Reads one line, word by word. All readers throw GoldenError.
 class Line {
   public:
     Line(const std::string& file, const GoldenFile::Line& line) : file_(file), line_(line) {}
@@ -91,7 +91,8 @@ Material read_object(Line& line, const Words& words) {
     return m;
 }
 
-/// The lines that say where the cell is and what formats its numbers have.
+/// Reads the lines of the head: first the cell's place, links and frame, which its number formats depend on,
+/// then the rest.
 class SetupReader {
   public:
     SetupReader(const GoldenFile& file, CellSetup& setup) : file_(file), setup_(setup) {}

@@ -1,4 +1,4 @@
-// Numbers as golden vectors have them: the integers that hardware's registers hold.
+// Numbers in golden vectors: the integers that a hardware register holds.
 #pragma once
 
 #include <stdexcept>
@@ -9,18 +9,18 @@
 
 namespace raycell {
 
-/// What is wrong with golden vectors, or with what drives a cell: where, what, what was allowed.
+/// An error in golden vectors or in the stimuli of a cell: where, what, what was allowed.
 struct GoldenError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The words of a line, which blanks separate.
+/// The words of a line, separated by blanks.
 std::vector<std::string> tokens_of(const std::string& line);
 
-/// Text of numbers and back, nothing lost. A word is its integer, in units of its format's last bit; a
-/// floating number is mantissa:exponent, the value mantissa · 2^(exponent - bits + 1), its mantissa of `bits`
-/// bits beside the sign (zero is 0:0). What is no word (exact arithmetic) is C's hexadecimal floating point,
-/// and infinity is "inf".
+/// Converts numbers to text and back without loss. A word is its integer, in units of its format's last bit.
+/// A floating number is mantissa:exponent, with the value mantissa · 2^(exponent - bits + 1) and a mantissa
+/// of `bits` bits beside the sign (zero is 0:0). A number that is not a word (exact arithmetic) is C's
+/// hexadecimal floating point; infinity is "inf".
 class Words {
   public:
     explicit Words(const Arithmetic& arithmetic) : arithmetic_(arithmetic) {}
@@ -28,7 +28,7 @@ class Words {
 
     std::string word(const Format& format, double value) const;
     std::string floating(int bits, double value) const;
-    /// Both throw GoldenError for what is no number of this kind.
+    /// Both throw GoldenError for text that is not a number of this kind.
     double read_word(const Format& format, const std::string& text) const;
     double read_floating(int bits, const std::string& text) const;
 

@@ -11,7 +11,7 @@ bool same(const EdgeFunction& a, const EdgeFunction& b) {
     return same(a.a, b.a) && same(a.b, b.b) && same(a.c, b.c) && a.piece == b.piece;
 }
 
-/// The first part of a voxel that differs; null if none does.
+/// The name of the first part of a voxel that differs; null if none does.
 const char* difference(const Voxel& a, const Voxel& b) {
     if (a.polygon != b.polygon) return "polygon";
     if (a.object != b.object) return "object";

@@ -1,4 +1,4 @@
-// The checks of a loading that look at its end: what the cells hold, how long it took.
+// Checks at the end of loading: what the cells hold, how long it took.
 #pragma once
 
 #include <utility>
@@ -12,7 +12,7 @@ namespace raycell::loading {
 Faults compare_stores(const std::vector<const CellStore*>& timed, const std::vector<CellStore>& untimed,
                       int width);
 
-/// Loading can't be over before its bound.
+/// A fault if loading was over before its bound.
 Faults check_bound(Cycle cycles, const LoadPlan::Bound& bound);
 
 /// Checks by name, in the order of the reports.

@@ -10,9 +10,9 @@ namespace raycell::loading {
 enum class UnitGroup { geometry, precomputation, distributors, cells };
 enum class LinkGroup { polygons, trapezes, down, rows, east };
 
-/// Units: geometry, precomputation, the distributors from the top row on, the cells row by row. Links: from
-/// geometry, from precomputation, from each row to the row below, from each row into its first cell, from
-/// each cell to its eastern neighbour.
+/// Order of units: geometry, precomputation, the distributors from the top row down, the cells row by row.
+/// Order of links: from geometry, from precomputation, from each row to the row below, from each row into its
+/// first cell, from each cell to its eastern neighbour.
 struct Layout {
     int width = 1;
     int height = 1;
@@ -34,7 +34,7 @@ struct Layout {
     }
     std::size_t links() const { return 1 + 2 * rows() + rows() * (columns() - 1); }
 
-    /// Where a unit or link stands; of a link, its source. Outside the array, x and y are -1.
+    /// The cell or row of a unit, or of a link's source. Outside the array, x and y are -1.
     struct Place {
         int x = -1;
         int y = -1;

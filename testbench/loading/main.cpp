@@ -1,5 +1,5 @@
-// loading_tb: the loading pipeline alone, no rays: does it load what it should, in order, and what holds it
-// up?
+// loading_tb: the loading pipeline alone, without rays. Does it load what it should, in order, and what
+// delays it?
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -79,7 +79,7 @@ std::vector<const CellStore*> stores_of(Machine& machine) {
     return stores;
 }
 
-/// A run that was stopped has loaded a part of the scene: what it should hold is not known then.
+/// A stopped run has loaded only a part of the scene, so the expected contents of its cells are unknown.
 NamedFaults check(Loading& loading, LoadWatch& watch) {
     const Verdict verdict = loading.result.verdict;
     const bool whole = verdict == Verdict::completed || verdict == Verdict::capacity;
@@ -117,7 +117,7 @@ void complain(const NamedFaults& checks) {
     }
 }
 
-/// False where the machine itself found that messages were lost.
+/// Runs the machine. False if the machine itself found that messages were lost.
 bool load(Machine& machine, const LoadPlan& plan, LoadWatch& watch, const RenderOptions& options,
           RunResult& result) {
     const MachineTap tap(machine, plan.layout, watch);
@@ -170,8 +170,8 @@ int run(Options& options, const OptionTable& table) {
     return count_of(loading.checks) > 0 ? exit_comparison : exit_code(result.verdict);
 }
 
-/// The command line's arguments behind those of --config, so that the former take precedence. A file that
-/// `raycell render` wrote serves too: what only rays need is passed over.
+/// The arguments of --config followed by those of the command line, which so take precedence. A file that
+/// `raycell render` wrote serves too: options that only rays need are ignored.
 std::vector<std::string> with_configuration(const std::vector<std::string>& words, const CLI::App& app) {
     const std::string path = configuration_named(words);
     if (path.empty()) return {words.begin() + 1, words.end()};

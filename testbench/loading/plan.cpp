@@ -59,7 +59,7 @@ void add(Digest& d, const Span& s) {
     d << s.intensity << s.d_intensity;
 }
 
-/// Goes through the scene in the loading order and adds up what each unit and link has to do with it.
+/// Goes through the scene in loading order and adds up the work of each unit and link.
 class Planner {
   public:
     Planner(const CellScene& scene, const PictureSettings& picture, const MachineSettings& machine)
@@ -75,7 +75,7 @@ class Planner {
         plan_.units.resize(layout.units());
         plan_.links.resize(layout.links());
         plan_.rows.resize(std::size_t(layout.height));
-        // One place more: what is added at `last + 1` is past the row's end.
+        // One place more per row: entries at `last + 1` may be past its end.
         const std::size_t cells = std::size_t(layout.width + 1) * std::size_t(layout.height);
         voxels_begin_.resize(cells);
         spans_end_.resize(cells);
@@ -113,7 +113,7 @@ class Planner {
         work_ = 1;
     }
 
-    /// To every unit and over every link.
+    /// Sends a message to every unit and over every link.
     void broadcast(Kind kind, std::uint32_t object, int bits) {
         LoadItem item;
         item.kind = kind;
@@ -155,8 +155,8 @@ class Planner {
         }
     }
 
-    /// From the top row down to the last one that has a part of the trapeze, which leaves precomputation in
-    /// cycle `way` at the earliest.
+    /// Passes a trapeze from the top row down to the last one that has a part of it. It leaves precomputation
+    /// in cycle `way` at the earliest.
     void distribute(const LoadItem& item, std::uint64_t way) {
         const Layout& layout = plan_.layout;
         const Trapeze& trapeze = item.trapeze;
@@ -226,9 +226,9 @@ class Planner {
     Arithmetic arithmetic_;
     MessageBits bits_;
     LoadPlan plan_;
-    std::vector<std::uint64_t> voxels_begin_;  ///< spans by the cell that they begin in
-    std::vector<std::uint64_t> spans_end_;     ///< spans by the cell behind their last one
-    std::uint64_t work_ = 1;                   ///< of geometry, for its next message
+    std::vector<std::uint64_t> voxels_begin_;  ///< number of spans that begin in each cell
+    std::vector<std::uint64_t> spans_end_;     ///< number of spans that end just before each cell
+    std::uint64_t work_ = 1;                   ///< cycles of geometry for its next message
     std::uint64_t broadcasts_ = 0;
     std::uint64_t broadcast_cycles_ = 0;
 };

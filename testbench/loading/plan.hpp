@@ -1,5 +1,5 @@
-// What loading a scene demands of each unit and link of the pipeline, found without time: which messages, in
-// which order, and how many cycles they take at least.
+// What each unit and link of the pipeline must do to load a scene, found without simulating time: which
+// messages, in which order, and how many cycles they take at least.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace raycell::loading {
 
-/// Of a unit: messages taken (geometry: put out), cycles of its work. Of a link: messages, cycles of its
+/// For a unit: messages taken (geometry: sent) and cycles of its work. For a link: messages and cycles of its
 /// wires.
 struct Need {
     std::uint64_t messages = 0;
@@ -26,18 +26,18 @@ struct LoadPlan {
     Layout layout;
     std::vector<Need> units;
     std::vector<Need> links;
-    std::vector<std::uint32_t> geometry_work;      ///< cycles of each message that geometry puts out
-    std::vector<std::uint64_t> polygons;           ///< digest_of() what geometry puts out, in order
-    std::vector<std::uint64_t> trapezes;           ///< the same of precomputation
-    std::vector<std::vector<std::uint64_t>> rows;  ///< the same of each row's distributor, to the east
+    std::vector<std::uint32_t> geometry_work;      ///< cycles of work for each message that geometry sends
+    std::vector<std::uint64_t> polygons;           ///< digest_of() each message that geometry sends, in order
+    std::vector<std::uint64_t> trapezes;           ///< the same for precomputation
+    std::vector<std::vector<std::uint64_t>> rows;  ///< the same for each row's distributor, to the east
     LoadCounts counts;                             ///< voxels and overflow are not counted here
 
-    /// Cycles that loading can't be shorter than, and what says so.
+    /// A lower bound on the cycles of loading, and what sets it.
     struct Bound {
         std::string of;
         std::uint64_t cycles = 0;
     };
-    Bound longest_way;  ///< from geometry to its last cell, of a span that nothing holds up
+    Bound longest_way;  ///< of a span that never waits, from geometry to its last cell
     /// The unit or link that needs most cycles.
     Bound busiest() const;
     /// The larger of the two.
@@ -46,8 +46,8 @@ struct LoadPlan {
 
 LoadPlan plan_loading(const CellScene& scene, const PictureSettings& picture, const MachineSettings& machine);
 
-/// Of everything that a load message carries; two that differ in a bit have different digests but for
-/// 2^-64 of chance.
+/// A digest of everything that a load message carries. Messages that differ in a bit have the same digest
+/// with a probability of 2^-64.
 std::uint64_t digest_of(const LoadItem& item);
 
 }  // namespace raycell::loading

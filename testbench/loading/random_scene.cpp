@@ -11,7 +11,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Numbers by SplitMix64's finaliser: the same with every standard library.
+/// Random numbers by SplitMix64's finaliser: the same with every standard library.
 class Draws {
   public:
     explicit Draws(std::uint64_t seed) : seed_(seed) {}
@@ -48,8 +48,8 @@ dvec3 draw_normal(const RandomPolygons& r, Draws& draws) {
     return {sine * std::cos(turn), sine * std::sin(turn), cosine};
 }
 
-/// Corners on a circle, one in the first three quarters of each of its `sides` equal parts: convex, never
-/// without area.
+/// A convex polygon with an area: its corners lie on a circle, one in the first three quarters of each of
+/// `sides` equal arcs.
 Polygon draw_polygon(const RandomPolygons& r, const Box& cube, std::uint32_t id, std::uint32_t object,
                      Draws& draws) {
     const double radius = draw_size(r, draws) / 2;

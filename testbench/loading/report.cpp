@@ -16,7 +16,7 @@ constexpr std::array<const char*, 5> link_groups = {"polygons", "trapezes", "dow
 
 double share(double part, double whole) { return whole > 0 ? part / whole : 0.0; }
 
-/// One group of units: sums, and the one that works most.
+/// One group of units: sums, and the busiest unit.
 Json stage(const Loading& l, UnitGroup group) {
     const Layout& layout = l.plan.layout;
     UnitUse sum;
@@ -97,7 +97,7 @@ Json links(const Loading& l, LinkGroup group) {
               {"fullest_mean", occupancy(l, uses[fullest])}}}};
 }
 
-/// What the cells of a column got over the links into them.
+/// What the cells of a column received over the links into them.
 struct Column {
     Cycle first = never;
     Cycle last_of_first_row = 0;
@@ -123,7 +123,7 @@ Column column(const Loading& l, int x) {
     return sum;
 }
 
-/// "never" has no number.
+/// JSON null for `never`.
 Json cycle(Cycle c) { return c == never ? Json() : Json(c); }
 
 Json wavefront(const Loading& l) {

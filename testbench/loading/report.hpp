@@ -1,4 +1,4 @@
-// What loading_tb tells of a run: JSON, tables, text.
+// The reports of loading_tb: JSON, tables, text.
 #pragma once
 
 #include <nlohmann/json.hpp>

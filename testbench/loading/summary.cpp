@@ -1,4 +1,4 @@
-// The run for people, made from its JSON.
+// The summary of a run for people, made from its JSON.
 #include <algorithm>
 #include <iomanip>
 #include <sstream>

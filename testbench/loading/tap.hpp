@@ -1,4 +1,4 @@
-// Hears a machine's loading pipeline for a listener.
+// Reports the messages of a machine's loading pipeline to a listener.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace raycell::loading {
 
-/// Watches the loading links of a machine from its making to its end; all three must live until then.
+/// Watches the loading links of a machine. Machine, layout and listener must outlive it.
 class MachineTap {
   public:
     MachineTap(Machine& machine, const Layout& layout, LoadListener& listener);

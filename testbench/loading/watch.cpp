@@ -94,7 +94,7 @@ void LoadWatch::sent(std::size_t link, const LoadItem& item, int cycles, Cycle n
     state.wires_free = arrival;
     ++use.sent;
     use.wire_cycles += std::uint64_t(cycles);
-    // A place that is read in this cycle still counts, as for the sender.
+    // A place that is freed in this cycle still counts, as it does for the sender.
     const int still_seen = state.last_pop == now ? state.popped_now : 0;
     use.peak = std::max(use.peak, int(state.held.size()) + still_seen);
     if (use.peak > use.depth) order_.add(at(link, now) + "more messages than places");
@@ -233,7 +233,7 @@ void LoadWatch::popped(std::size_t link, const LoadItem& item, Cycle now) {
 void LoadWatch::take_into_precomputation(const Held& held, Cycle now) {
     UnitState& unit = units_[Layout::precomputation];
     UnitUse& use = use_[Layout::precomputation];
-    // A polygon that left no trapeze takes the cycle in which it was read.
+    // A polygon without a trapeze takes only the cycle in which it was read.
     const Cycle free = unit.taken == never ? unit.begin : std::max(unit.last_send, unit.taken + 1);
     const Cycle first = std::max(free, held.arrival);
     if (now != first) {

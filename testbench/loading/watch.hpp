@@ -1,5 +1,5 @@
-// Follows every load message through the pipeline, over links and through units: checks what the design
-// promises of it, and adds up where the cycles went.
+// Follows every load message through the links and units of the pipeline, checks the rules of the design and
+// adds up where the cycles went.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace raycell::loading {
 
-/// Cycles for which a unit had finished a message and could not send it.
+/// Cycles in which a unit had finished a message and could not send it.
 struct OutputWait {
     std::uint64_t full = 0;  ///< no room in the buffer at the far end
     std::uint64_t busy = 0;  ///< room, but the wires carried another message
@@ -20,9 +20,9 @@ struct OutputWait {
 /// Where a unit's cycles went, from the start of loading to its last message. A distributor sends to the east
 /// and down at the same time, so its waits may overlap; `blocked` counts each cycle once.
 struct UnitUse {
-    std::uint64_t messages = 0;  ///< taken; of geometry: put out
+    std::uint64_t messages = 0;  ///< taken; geometry: sent
     std::uint64_t busy_cycles = 0;
-    std::uint64_t starved_cycles = 0;  ///< nothing in the input buffer, or only on the wires
+    std::uint64_t starved_cycles = 0;  ///< no message has arrived in the input buffer
     std::uint64_t blocked_cycles = 0;
     std::array<OutputWait, 2> waits;  ///< the only output, or east; down
 };
@@ -31,14 +31,14 @@ struct LinkUse {
     std::uint64_t sent = 0;
     std::uint64_t delivered = 0;
     std::uint64_t wire_cycles = 0;      ///< random stalls included
-    std::uint64_t occupied_cycles = 0;  ///< sum over messages of the cycles that they took up a place
+    std::uint64_t occupied_cycles = 0;  ///< sum over messages of the cycles that each held a place
     int depth = 0;
     int peak = 0;
     Cycle first_arrival = never;
     Cycle last_arrival = 0;
 };
 
-/// Told of every message that starts over a link and every one that leaves a buffer, cycle by cycle.
+/// Gets every message that is sent over a link and every one that leaves a buffer, cycle by cycle.
 class LoadListener {
   public:
     virtual ~LoadListener() = default;
@@ -48,25 +48,26 @@ class LoadListener {
 
 class LoadWatch : public LoadListener {
   public:
-    /// Both must outlive it. `stage_link_depth`: of the two links before the distributors.
+    /// `plan` and `machine` must outlive it. `stage_link_depth`: buffer depth of the two links before the
+    /// distributors.
     LoadWatch(const LoadPlan& plan, const MachineSettings& machine, int stage_link_depth);
 
     void sent(std::size_t link, const LoadItem& item, int cycles, Cycle now) override;
     void popped(std::size_t link, const LoadItem& item, Cycle now) override;
-    /// After a run that came to its end: is everything there, is nothing left?
+    /// Call after a run that was not stopped: checks that all messages arrived and none is left.
     void finish();
 
     const std::vector<UnitUse>& units() const { return use_; }
     const std::vector<LinkUse>& links() const { return link_use_; }
 
-    /// Messages come out of a link as they went in, pass a unit in the order in which they came, and leave a
-    /// cell or distributor as what was taken there; sources and viewer first, a cell knows the features of
-    /// every span's object, nothing follows the end-of-scene mark.
+    /// Messages keep their order in links and units; a cell or distributor sends on what it took. Sources and
+    /// viewer come first, a cell knows the features of every span's object, nothing follows the end-of-scene
+    /// mark.
     const Faults& order() const { return order_; }
     /// Every unit and link handles the messages of the plan, no more and no fewer; geometry, precomputation
     /// and distributors send them in its order and with its bits.
     const Faults& content() const { return content_; }
-    /// What is sent arrives, and every cell drops what ends in it.
+    /// Every sent message arrives, and every cell drops the messages that end in it.
     const Faults& conservation() const { return conservation_; }
     /// A message moves in the first cycle in which its unit is done, the wires are free and there is room.
     const Faults& promptness() const { return promptness_; }
@@ -74,14 +75,14 @@ class LoadWatch : public LoadListener {
   private:
     struct Held {
         const LoadItem* item;
-        std::uint64_t ticket;  ///< its number in the order in which it began its way
+        std::uint64_t ticket;  ///< its number in the order in which messages must leave
         Cycle sent;
         Cycle arrival;
-        std::uint32_t work;  ///< cycles that it takes at the far end
+        std::uint32_t work;  ///< cycles of work at the far end
     };
     struct LinkState {
         std::vector<Held> held;   ///< oldest first
-        std::vector<Cycle> room;  ///< cycles of pops that no later message has made use of
+        std::vector<Cycle> room;  ///< cycles of pops whose room no later message has used
         Cycle wires_free = 0;
         Cycle last_pop = never;
         int popped_now = 0;  ///< in cycle last_pop
@@ -89,10 +90,11 @@ class LoadWatch : public LoadListener {
     };
     struct UnitState {
         Cycle begin = 1;  ///< first cycle in which it can take a message, or begin the next trapeze
-        Cycle ready = 0;  ///< when it is done with what it works on
+        Cycle ready = 0;  ///< cycle in which its current work is done
         Cycle last_send = 0;
-        bool works = false;              ///< distributor: on the oldest message of its input
-        const LoadItem* held = nullptr;  ///< cell: taken in `taken`, to be sent in the same cycle
+        bool works = false;  ///< distributor: is working on the oldest message of its input
+        const LoadItem* held =
+            nullptr;  ///< cell: message taken in cycle `taken`, to be sent in the same cycle
         std::uint64_t ticket = 0;
         Cycle taken = never;
         bool set_up = false;    ///< cell: sources and viewer are known

@@ -1,5 +1,5 @@
-// A cell of one's own: a plain SystemC module that passes load messages, rays and answers on and sends its
-// pixel's primary ray. Where no voxel lies it can stand in for a cell of the array's (own_cell_test.cpp).
+// An example of a user's own cell: a plain SystemC module that forwards load messages, rays and answers and
+// sends its pixel's primary ray. Where no voxel lies, it can replace an array's cell (own_cell_test.cpp).
 #pragma once
 
 #include <algorithm>
@@ -56,7 +56,7 @@ class OwnCell : public CellSocket {
         if (place.from) return place.from->front(place.index);
         return injector_.ray() ? Message(injector_.ray()) : Message();
     }
-    /// Answers, then tested rays, the oldest first.
+    /// Passes on answers, then tested rays, oldest first.
     void pass() {
         std::vector<std::tuple<bool, Cycle, std::size_t>> ready;
         for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -78,7 +78,7 @@ class OwnCell : public CellSocket {
         }
     }
 
-    /// An answer that is home is delivered, one in a cycle; others go on. False: not now.
+    /// Delivers an answer that is home, one per cycle; sends others on. False: not possible now.
     bool pass(Answer* answer) {
         if (answer->home_x == x_ && answer->home_y == y_) {
             wakeup_.at(now_ + 1);
@@ -95,7 +95,7 @@ class OwnCell : public CellSocket {
         return true;
     }
 
-    /// A ray goes on or ends; false: not now, or it stays for another test.
+    /// Sends a ray on or ends it. False: not possible now, or it stays for another test.
     bool pass(RayPacket& packet) {
         const Need need = packet.need;
         if (need.kind == Need::Kind::border_walk) {
@@ -118,7 +118,7 @@ class OwnCell : public CellSocket {
         return true;
     }
 
-    /// The next untested ray, in turn.
+    /// Tests the next untested ray, in turn.
     void test() {
         for (std::size_t i = 0; i < places_.size(); ++i) {
             const std::size_t at = (traversal_.next() + i) % places_.size();

@@ -8,8 +8,8 @@ namespace raycell::protocol {
 Script::Script(int width, int height, Networks networks, int depth)
     : width_(width), height_(height), depth_(depth), classes_(buffer_classes(networks)) {}
 
-/// The buffer at the far end of the link that leaves (x, y) towards a side, over the border too; the border's
-/// links inwards are numbered by the cell that they lead to, in the second half.
+/// Appends the buffer at the far end of the link that leaves (x, y) towards a side, also over the border.
+/// Links from the border inwards are numbered by the cell that they lead to, in the second half.
 void Script::pass(std::vector<std::uint16_t>& way, int x, int y, Side towards, int index) const {
     const bool inwards = x < 0 || x >= width_ || y < 0 || y >= height_;
     if (inwards) {

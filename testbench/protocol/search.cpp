@@ -10,16 +10,16 @@
 namespace raycell::protocol {
 namespace {
 
-/// Where a ray (or what became of it) is.
+/// Where a ray, its answer or its notice is.
 enum Place : std::uint8_t {
     unsent = 0,
-    in_register = 1,  ///< the slot's child register, or the cell's own
+    in_register = 1,  ///< the slot's child register, or the cell's register of the own ray
     on_way = 2,       ///< + index into Ray::way
     to_set_up = 64,   ///< the three states of a slot
     waiting = 65,
     to_reply = 66,
-    in_unit = 67,       ///< the shading unit, answer in hand
-    in_processor = 68,  ///< of the exterior, answer in hand
+    in_unit = 67,       ///< the shading unit, with its answer
+    in_processor = 68,  ///< of the exterior, with its answer
     answer = 96,        ///< + index into Ray::back
     notice = 160,       ///< "postponed", + index into Ray::back
     done = 255
@@ -90,7 +90,7 @@ class Moves {
     bool unit_taken(int at) const {
         return any([&](std::size_t i) { return state_[i] == in_unit && end_cell(i) == at; });
     }
-    /// Finish before you begin: a slot ready to be shaded goes before a direct hit.
+    /// A slot ready to be shaded goes before a direct hit: work that was begun is finished first.
     bool slot_complete(int at) const {
         return any(
             [&](std::size_t i) { return state_[i] == waiting && end_cell(i) == at && children_done(i); });
@@ -106,7 +106,7 @@ class Moves {
     void move(std::size_t i);
     bool may_be_sent(std::size_t i) const;
     void move_at_end(std::size_t i);
-    /// An answer or a notice sets out, or is home at once.
+    /// Sends an answer or a notice, which may be home at once.
     void set_out(std::size_t i, Place kind) {
         const std::uint8_t home = kind == answer ? done : unsent;
         if (ray(i).back.empty()) return to(i, home);
@@ -127,12 +127,12 @@ class Moves {
 
 bool Moves::may_be_sent(std::size_t i) const {
     const auto& parents = ray(i).parents;
-    if (parents.size() > 1) {  // memo: whichever slot is there first asks
+    if (parents.size() > 1) {  // memo: the first slot to wait sends it
         return std::any_of(parents.begin(), parents.end(),
                            [&](int p) { return state_[std::size_t(p)] == waiting; });
     }
     if (!parents.empty() && state_[std::size_t(parents[0])] != waiting) return false;
-    return !any([&](std::size_t other) {  // one at a time through the register
+    return !any([&](std::size_t other) {  // the register holds one ray at a time
         if (other == i || state_[other] != in_register) return false;
         if (!parents.empty()) return ray(other).parents == parents;
         return ray(other).parents.empty() && ray(other).x == ray(i).x && ray(other).y == ray(i).y;
@@ -160,7 +160,7 @@ void Moves::move(std::size_t i) {
     }
 }
 
-/// The ray stands where its way ends: in a buffer, or in the register of the cell that sent it.
+/// Moves a ray at the end of its way, in a buffer or in the register of the cell that sent it.
 void Moves::move_at_end(std::size_t i) {
     const int here = end_cell(i);
     switch (ray(i).end) {
@@ -202,7 +202,7 @@ std::string Moves::describe(std::size_t i, std::uint8_t place) const {
     return "is answered";
 }
 
-/// All states seen, by number; open addressing over their bytes.
+/// All states seen, with their numbers: a hash table with open addressing over their bytes.
 class Seen {
   public:
     explicit Seen(std::size_t bytes) : bytes_(bytes), table_(1 << 12, none) {}
@@ -212,7 +212,7 @@ class Seen {
         std::copy_n(states_.begin() + std::ptrdiff_t(i * bytes_), bytes_, state.begin());
         return state;
     }
-    /// The state's number; a new one if it was not there.
+    /// The state's number; a new state gets the next one.
     std::uint32_t number(const State& state) {
         if (2 * size() >= table_.size()) grow();
         const std::size_t slot = find(state.data());
@@ -300,12 +300,13 @@ bool accepts(const Rules& rules, const std::vector<int>& used, int generation) {
     for (const int u : used) all += u;
     if (all >= rules.ray_store) return false;
     if (rules.slots == Slots::free) return true;
-    // One slot for each group of its own, those beyond for all; the deepest generations share the last group.
+    // Each group has one slot of its own, the others are for all. The deepest generations share the last
+    // group.
     const int groups = std::max(1, std::min(rules.ray_store, rules.generations));
     std::vector<int> group(std::size_t(groups), 0);
     for (std::size_t g = 0; g < used.size(); ++g) group[std::min(g, std::size_t(groups - 1))] += used[g];
     if (rules.slots == Slots::nested) {
-        // Generations up to any from this one on leave one slot for each deeper group.
+        // For this group and each deeper one: the groups up to it leave one slot for every group beyond it.
         int up_to = 0;
         for (int g = 0; g < groups; ++g) {
             up_to += group[std::size_t(g)];
@@ -323,7 +324,7 @@ bool accepts(const Rules& rules, const std::vector<int>& used, int generation) {
 Result search(const Script& script, const Rules& rules, std::uint64_t most_states) {
     Moves moves(script, rules);
     Seen seen(std::max<std::size_t>(script.rays().size(), 1));
-    std::vector<std::uint32_t> first{0};  // of a state's moves in `targets`
+    std::vector<std::uint32_t> first{0};  // index in `targets` of each state's first move
     std::vector<std::uint32_t> targets;
     std::vector<std::uint32_t> came_from{0};
     std::vector<std::uint32_t> ends;
@@ -349,7 +350,7 @@ Result search(const Script& script, const Rules& rules, std::uint64_t most_state
     result.states = seen.size();
     result.moves = targets.size();
     result.deadlocks = stuck.size();
-    // Breadth first: the first in number is the nearest.
+    // The search is breadth first, so the lowest number is the nearest state.
     if (!stuck.empty()) result.way_to_deadlock = trace(script, moves, seen, came_from, stuck.front());
     std::vector<std::uint32_t> goals = ends;
     goals.insert(goals.end(), stuck.begin(), stuck.end());
