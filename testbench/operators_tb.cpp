@@ -46,8 +46,8 @@ class Errors {
     std::int64_t count_ = 0;
 };
 
-/// Calls `visit` with the words from `first` to `last`, of `fraction_bits`: with all if they are no more than
-/// a million, else with so many, evenly spread; always with both ends.
+/// Calls `visit` with the words from `first` to `last`, which have `fraction_bits`: with all words if they
+/// are no more than a million, else with about a million, evenly spread. Both ends are always included.
 template <class Visit>
 void for_words(double first, double last, int fraction_bits, Visit visit) {
     const double step = scale_by(1, -fraction_bits);
@@ -87,7 +87,7 @@ Errors usual_power_errors(const Operators& operators, int word_bits) {
     return power_errors(operators, word_bits, 0, {1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1000, 1024});
 }
 
-/// Powers of lesser bases are 0 in any word.
+/// Powers of smaller bases are 0 in any word.
 Errors high_power_errors(const Operators& operators, int word_bits) {
     return power_errors(operators, word_bits, 1023.0 / 1024, {100000});
 }
@@ -96,7 +96,7 @@ template <class Method>
 struct Variant {
     const char* name;
     Method method;
-    int tables;  ///< that it needs
+    int tables;  ///< number that it needs
 };
 
 /// An operator, and the arguments over which it is measured.
@@ -111,8 +111,8 @@ struct Measured {
     std::uint32_t (CostTable::*cycles)(const OperatorSettings&) const;
 };
 
-/// The lines of one operator: its methods, those with tables in several sizes. A table holds two words per
-/// entry, its value and the difference to the next.
+/// Prints the lines of one operator: its methods, those with tables in several sizes. A table holds two words
+/// per entry, its value and the difference to the next.
 template <class Method>
 void print_operator(const Measured<Method>& measured, int word_bits) {
     for (const Variant<Method>& variant : measured.variants) {
@@ -209,7 +209,7 @@ void run(const std::vector<std::string>& arguments) {
     print_table(word_bits);
 }
 
-/// Throws if what was printed did not arrive.
+/// Throws std::runtime_error if standard output can't be written.
 void flush_output() {
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
         throw std::runtime_error("standard output can't be written");

@@ -75,7 +75,7 @@ class LoadWatch : public LoadListener {
   private:
     struct Held {
         const LoadItem* item;
-        std::uint64_t ticket;  ///< its number in the order in which messages must leave
+        std::uint64_t ticket;  ///< its number in the order in which messages began their way
         Cycle sent;
         Cycle arrival;
         std::uint32_t work;  ///< cycles of work at the far end

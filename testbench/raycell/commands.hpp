@@ -8,7 +8,7 @@
 
 namespace raycell {
 
-// Beside these exit_interrupted (signals.hpp).
+// exit_interrupted (signals.hpp) is one more.
 enum ExitCode {
     exit_done = 0,
     exit_usage = 1,

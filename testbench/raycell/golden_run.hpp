@@ -10,20 +10,19 @@
 
 namespace raycell {
 
-/// Throws UsageError for cells outside the array or too many of them, and without a timed engine.
+/// Throws UsageError for cells outside the array, for too many of them, and with the untimed engine.
 void check_golden(const RenderOptions& options);
 
-/// Of the files that it writes.
+/// The suffixes of the files that it writes.
 std::vector<std::string> golden_suffixes(const RenderOptions& options);
 
 class GoldenRun {
   public:
-    /// Begins PREFIX.golden_X_Y.txt. `configuration` is the run's, TOML; machine and outputs must outlive
-    /// this.
+    /// Begins PREFIX.golden_X_Y.txt. `configuration`: the run's, TOML. Machine and outputs must outlive this.
     GoldenRun(const RenderOptions& options, const std::string& configuration, Machine& machine,
               OutputSet& outputs);
     CellObserver& observer() { return *recorder_; }
-    /// The run is over.
+    /// Call when the run is over.
     void finish() { recorder_->finish(); }
 
   private:

@@ -19,7 +19,7 @@ void parse(CLI::App& program, std::vector<std::string> words) {
     program.parse(words);
 }
 
-/// The arguments with those of --config put before the command line's own, which so take precedence.
+/// Puts the arguments of --config before the command line's own, which so take precedence.
 std::vector<std::string> with_configuration(CLI::App& program, std::vector<std::string> words,
                                             const CLI::App& command) {
     const std::string path = configuration_named(words);
@@ -28,7 +28,7 @@ std::vector<std::string> with_configuration(CLI::App& program, std::vector<std::
     std::vector<std::string> alone = {words.front()};
     alone.insert(alone.end(), from_file.begin(), from_file.end());
     try {
-        parse(program, alone);  // so that an error is known to be the file's
+        parse(program, alone);  // alone, so that an error is known to be the file's
     } catch (const CLI::ParseError& error) {
         throw UsageError(path + ": " + error.what());
     }

@@ -1,4 +1,4 @@
-// The only file that knows MPI.
+// The only file that uses MPI.
 #include "testbench/raycell/mpi_transport.hpp"
 
 #include <mpi.h>
@@ -11,7 +11,8 @@
 namespace raycell {
 namespace {
 
-/// Almost all parcels of a cycle fit into one message of this size; of a longer one the rest follows.
+/// Size of a parcel's first message, bytes. Almost all parcels of a cycle fit; of a longer one the rest
+/// follows.
 constexpr std::size_t first_bytes = 65536;
 constexpr std::size_t most_bytes = std::size_t(1) << 30;  ///< MPI counts in ints
 enum Tag { tag_whole = 1, tag_begun, tag_rest, tag_size, tag_part };
@@ -23,7 +24,7 @@ void join_progress(void* in, void* in_out, int* count, MPI_Datatype*) {
     }
 }
 
-/// Errors end the run (MPI's own handler does, with a message), so return codes tell nothing.
+/// Return codes are not checked, since MPI's own handler ends the run with a message.
 class MpiSession : public RankSession {
   public:
     MpiSession() {
@@ -110,11 +111,11 @@ class MpiSession : public RankSession {
 
     void abort(int code) override {
         MPI_Abort(MPI_COMM_WORLD, code);
-        std::abort();  // MPI_Abort() does not return, but does not say so
+        std::abort();  // MPI_Abort() does not return, but is not declared so
     }
 
   private:
-    /// What did not fit into the first messages.
+    /// Exchanges what did not fit into the first messages.
     void swap_rest(std::vector<Parcel>& parcels) {
         std::vector<MPI_Request> sent;
         for (const Parcel& parcel : parcels) {

@@ -1,5 +1,5 @@
-// Ranks as processes that mpirun has started. Nothing of MPI's shows here; without it the program is built
-// with mpi_missing.cpp instead.
+// Ranks as processes that mpirun started. This interface shows nothing of MPI; without MPI the program is
+// built with mpi_missing.cpp instead.
 #pragma once
 
 #include <memory>
@@ -8,12 +8,12 @@
 
 namespace raycell {
 
-/// The ranks as they are while one machine runs.
+/// The connection between the ranks while one machine runs.
 class RankSession : public RankTransport {
   public:
-    /// What rank 0 has, for all.
+    /// Gives all ranks what rank 0 passes.
     virtual Bytes broadcast(const Bytes& from_rank_0) = 0;
-    /// Ends the session, when all ranks have come here.
+    /// Ends the session once all ranks have called it.
     virtual void finish() = 0;
     /// Ends all ranks at once; mpirun's exit code will be `code`.
     [[noreturn]] virtual void abort(int code) = 0;

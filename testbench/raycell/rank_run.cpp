@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The session, which a failure has to end when everything else is gone: it lives as long as the program.
+/// The session. It lives as long as the program, since a failure has to end it when everything else is gone.
 std::unique_ptr<RankSession> session;
 /// Whether the others are about to end by themselves.
 bool others_end = false;
@@ -39,7 +39,7 @@ Bytes scene_bytes(const CellScene& scene) {
     return bytes.take();
 }
 
-/// All that cells, distributors and links look at; polygons are geometry's, which is rank 0's.
+/// Everything that cells, distributors and links use. Only geometry needs polygons, and it runs on rank 0.
 CellScene scene_of(ByteReader& bytes) {
     CellScene scene;
     scene.frame = bytes.get<Frame>();

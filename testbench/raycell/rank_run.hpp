@@ -9,13 +9,13 @@
 
 namespace raycell {
 
-/// --rank-rows. Not part of a run's configuration: nothing in its results depends on it.
+/// Adds --rank-rows. It is not part of a run's configuration: no result depends on it.
 void add_rank_options(CLI::App& app, RenderOptions& options);
 /// Throws RanksRefused for what only one process can do, and UsageError for rows that don't fit.
 void check_ranks(const RenderOptions& options);
 
-/// This process among those that mpirun started; one at most. From its construction on, an error that is not
-/// told by share_scene() ends all ranks.
+/// This process among those that mpirun started; one object at most. Once it is constructed, an error that
+/// share_scene() does not pass on ends all ranks.
 class RankRun {
   public:
     /// Joins the others. Throws RanksRefused in a program without MPI.
@@ -25,19 +25,20 @@ class RankRun {
     RankRun& operator=(const RankRun&) = delete;
 
     bool first() const;
-    /// Rank 0 reads the scene; the others get all of it but its polygons. What `read` throws ends all ranks
-    /// with its message, said once.
+    /// Rank 0 reads the scene; the others get all of it but its polygons. If `read` throws, all ranks end,
+    /// and its message is printed once.
     CellScene share_scene(const std::function<CellScene()>& read);
-    /// For the machine; once.
+    /// The exchange of the machine. Call once.
     RankExchange& exchange(const CellScene& scene, const RenderOptions& options);
-    /// Of a text for each of its rows, from the top down, rank 0 alone gets those of the whole array's.
+    /// Gathers a text for each row. `mine`: those of this rank's rows, from the top down. Rank 0 gets those
+    /// of the whole array, the others nothing.
     std::vector<std::string> gather_rows(const std::vector<std::string>& mine);
-    /// `ranks` of the report, on rank 0: rows, hops, bytes and seconds of each. `machine` has run.
+    /// `ranks` of the report, on rank 0: rows, hops, bytes and seconds of each. Call when `machine` has run.
     nlohmann::ordered_json report(Machine& machine, std::uint64_t memory_bytes);
-    /// The machine has run, and the others only wait for finish(): a failure from now on is this rank's
-    /// alone.
+    /// Call when the machine has run and the others only wait for finish(): a failure from now on is this
+    /// rank's alone.
     void others_are_done();
-    /// All is written: lets the others go.
+    /// Call when all is written: lets the others go.
     void finish();
 
   private:

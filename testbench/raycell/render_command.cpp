@@ -65,7 +65,7 @@ struct Run {
     std::unique_ptr<Interruptible> interruptible;  ///< of a timed run, until its results are published
 };
 
-/// What the run will take; a long one says so.
+/// Estimates the run's duration and prints it if it is long.
 void foretell(const RenderOptions& options, const CellScene& scene, const TruthRenderer* truth, Run& run) {
     run.forecast = forecast(scene, options.picture, truth);
     const auto cells = std::size_t(options.picture.width) * std::size_t(options.picture.height);
@@ -196,8 +196,8 @@ Json render_truth(const RenderOptions& options, const CellScene& scene, const Pi
     return report(compare(picture, exact));
 }
 
-/// How far a sample of the picture's pixels is from the truth. Words too short for a scene show here and
-/// nowhere else; where only words can be the reason, and much is lost, it is said.
+/// Compares a sample of the picture's pixels with the truth; only this shows that words are too short for a
+/// scene. Warns if much is lost and only words can be the reason.
 void add_sample(const RenderOptions& options, const RunResult& result, const CellScene& scene,
                 const TruthRenderer* truth, Json& losses) {
     losses["sample"] = {{"pixels", 0}, {"psnr_db", nullptr}};
@@ -219,7 +219,7 @@ void add_sample(const RenderOptions& options, const RunResult& result, const Cel
     }
 }
 
-/// Of all files that the run may write.
+/// The suffixes of all files that the run may write.
 std::vector<std::string> suffixes_of(const RenderOptions& options) {
     std::vector<std::string> all = {".exr",        ".png",      ".cells.csv", ".ledger.csv",
                                     ".waits.json", ".knot.svg", ".toml",      ".json"};
@@ -232,7 +232,7 @@ std::vector<std::string> suffixes_of(const RenderOptions& options) {
     return all;
 }
 
-/// Announces all that the run writes; throws UsageError for what is refused.
+/// Announces all files of the run. Throws UsageError for what is refused.
 void announce(const RenderOptions& options, OutputSet& outputs) {
     check_place("--output", options.prefix);
     outputs.announce(suffixes_of(options));
@@ -246,7 +246,8 @@ void announce(const RenderOptions& options, OutputSet& outputs) {
     outputs.announce_file(options.save_array);
 }
 
-/// All files of a run that has ended, published together. False if a signal cut short what comes after it.
+/// Writes and publishes all files of an ended run together. False if a signal cut short the work after the
+/// run.
 bool write_results(const RenderOptions& options, const CellScene& scene, const Run& run, const Json& config,
                    Json& json, OutputSet& outputs) {
     const RunResult& result = run.result;
@@ -307,7 +308,7 @@ void summarise(const RenderOptions& options, const Json& json, bool whole) {
 
 int run(const RenderOptions& options, const OptionTable& table) {
     check_granularity(options);
-    watch_of(options, std::cout);  // refuses what can't be watched before anything is done
+    watch_of(options, std::cout);  // throws early for what can't be watched
     check_probes(options);
     check_golden(options);
     check_ranks(options);
@@ -331,7 +332,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
     const bool exterior = options.picture.exterior == ExteriorMode::host && traces;
     std::unique_ptr<TruthRenderer> whole;
     std::unique_ptr<ClassicalExterior> tracer;
-    if (exterior || (traces && options.engine == Engine::timed)) {  // for the forecast alone, too
+    if (exterior || (traces && options.engine == Engine::timed)) {  // the forecast needs it, too
         whole = std::make_unique<TruthRenderer>(
             scene, TruthSettings{options.picture.max_depth, options.picture.min_weight});
     }

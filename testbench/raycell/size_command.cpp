@@ -35,13 +35,13 @@ PictureSettings picture_of(const RenderOptions& options, const SizeSetting& sett
     return picture;
 }
 
-/// The scene as it is placed with so many depth levels: nothing else of it depends on them.
+/// The scene as placed with this number of depth levels, on which nothing else of it depends.
 CellScene with_levels(CellScene scene, int depth_levels) {
     scene.frame.depth_levels = depth_levels;
     return scene;
 }
 
-/// What the cells of an array hold, whatever normals and shadow bits add to a voxel.
+/// What the cells of an array hold, independent of what normals and shadow bits add to a voxel.
 class LoadedCells {
   public:
     LoadedCells(const CellScene& scene, const PictureSettings& picture) {
@@ -70,7 +70,7 @@ class LoadedCells {
   private:
     static constexpr std::int64_t none = -1;
     StorageCounts counts_;
-    std::vector<std::int64_t> most_edges_;  ///< by the number of voxels: edges of the cell with most of them
+    std::vector<std::int64_t> most_edges_;  ///< by number of voxels in a cell: most edges of such cells
 };
 
 /// Machines of one scene, measured by the untimed engine against one truth.
@@ -140,8 +140,8 @@ std::vector<int> levels_to_try(int limit) {
     return levels;
 }
 
-/// The found machine as options of render: no voxel more than it needs, the fewest slots that are guaranteed
-/// to end (design, section 5), buffers of one message.
+/// The found machine as options of render: no larger voxel capacity than it needs, the fewest slots that are
+/// guaranteed to end (design, section 5), buffers of one message.
 RenderOptions machine_of(const SizeOptions& options, const CellScene& scene, const SizeTrial& found) {
     RenderOptions machine = options;
     machine.prefix = RenderOptions().prefix;

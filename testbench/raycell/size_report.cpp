@@ -18,7 +18,7 @@ std::string decimals(const char* format, double value) {
 /// Without the quotes that words have in JSON.
 std::string plain(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
-/// Markdown, padded so that it reads as it stands; the first `left` columns are words.
+/// A Markdown table, padded to be readable as text; the first `left` columns are words.
 std::string aligned(const std::vector<Row>& rows, std::size_t left) {
     std::vector<std::size_t> widths(rows.front().size(), 0);
     for (const Row& row : rows) {

@@ -28,7 +28,7 @@ std::string accuracy_words(const nlohmann::ordered_json& trial);
 /// The paper's estimates: 40 bytes per voxel, 16 voxels in the first prototype, 5 Kbyte per cell.
 nlohmann::ordered_json paper_figures();
 
-/// The machine beside the paper's.
+/// A table of the machine beside the paper's.
 std::string beside_the_paper(const nlohmann::ordered_json& trial);
 
 }  // namespace raycell

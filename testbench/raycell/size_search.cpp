@@ -10,8 +10,8 @@ namespace {
 
 constexpr int threads = 2;
 
-/// Short words have wide tolerances (Arithmetic::hair), so that a cell may take more voxels of them than of
-/// longer ones. Beyond so many bits (tolerance 0.002 cells) the longer word stores more.
+/// Short words have wide tolerances (Arithmetic::hair), so a cell may hold more voxels with them than with
+/// longer words. Above this many bits (tolerance 0.002 cells) the longer word stores more.
 constexpr int most_rough_words = 13;
 
 SizeSetting with_words(SizeSetting setting, int word_bits) {
@@ -24,7 +24,8 @@ SizeSetting with_levels(SizeSetting setting, int depth_levels) {
     return setting;
 }
 
-/// Below `plane` a voxel is a box of depth levels: fewer make it larger, and the picture better or worse.
+/// Whether each number of depth levels has to be compared. Below `plane` a voxel is a box of depth levels:
+/// fewer levels make it larger, and the picture better or worse.
 bool compares_levels(HitTest hit) { return hit == HitTest::depth || hit == HitTest::interval; }
 
 }  // namespace
@@ -56,7 +57,7 @@ const SizeTrial& SizeSearch::trial(const SizeSetting& setting) {
     return tried_[index_.at(setting)];
 }
 
-/// The hit tests that the longest words, linear normals and a shadow ray per hit bring near the goal.
+/// The hit tests that come near the goal with the longest words, linear normals and a shadow ray per hit.
 std::vector<SizeSearch::Combination> SizeSearch::reachable_rungs() {
     std::vector<SizeSetting> longest;
     for (const HitTest hit :
@@ -81,7 +82,8 @@ std::vector<SizeSearch::Combination> SizeSearch::reachable_rungs() {
     return rungs;
 }
 
-/// Shadows by `memo` give the picture of `precast` and keep a bit more per source: never smaller.
+/// The combinations that come near the goal with the longest words, cheapest first. `memo` is left out: it
+/// gives the picture of `precast` and keeps a bit more per source.
 std::vector<SizeSearch::Combination> SizeSearch::reachable_combinations() {
     std::vector<Combination> all;
     for (const Combination& rung : reachable_rungs()) {
@@ -110,7 +112,8 @@ std::vector<SizeSearch::Combination> SizeSearch::reachable_combinations() {
     return all;
 }
 
-/// Words, shortest first, from `least` on with which the setting is smaller than the smallest machine found.
+/// Word lengths from `least` on, shortest first, with which the setting is smaller than the smallest machine
+/// found.
 std::vector<int> SizeSearch::affordable_words(const SizeSetting& setting, int least) const {
     std::vector<int> words;
     if (!best_) {
@@ -131,7 +134,7 @@ std::vector<int> SizeSearch::affordable_words(const SizeSetting& setting, int le
     return words;
 }
 
-/// Finds the fewest of these words that meet the goal and, where shorter words store more, the cheapest.
+/// Finds the shortest of these words that meets the goal and, where shorter words store more, the cheapest.
 void SizeSearch::search_words(const SizeSetting& setting, const std::vector<int>& words) {
     if (words.empty()) return;
     const auto at = [&](int i) { return with_words(setting, words[std::size_t(i)]); };
@@ -163,7 +166,7 @@ void SizeSearch::search_words(const SizeSetting& setting, const std::vector<int>
     }
 }
 
-/// One more than the longest words that were tried with this setting and missed the goal clearly.
+/// One bit more than the longest word that was tried with this setting and clearly missed the goal.
 int SizeSearch::least_hopeful_words(const SizeSetting& setting) const {
     for (int words = most_word_bits; words >= least_word_bits; --words) {
         const auto found = index_.find(with_words(setting, words));
@@ -172,7 +175,7 @@ int SizeSearch::least_hopeful_words(const SizeSetting& setting) const {
     return least_word_bits;
 }
 
-/// Word bits for one number of depth levels; what more levels showed is known in `combination`.
+/// Searches the word bits for one number of depth levels; `combination` tells what more levels showed.
 void SizeSearch::search_level(Combination& combination, int levels) {
     const SizeSetting setting = with_levels(combination.setting, levels);
     search_words(setting, affordable_words(setting, combination.least_words));
@@ -180,7 +183,7 @@ void SizeSearch::search_level(Combination& combination, int levels) {
     combination.least_words = std::max(combination.least_words, least_hopeful_words(setting));
 }
 
-/// Settings one step below in one thing.
+/// Settings that are one step smaller in one respect.
 std::vector<SizeSetting> SizeSearch::steps_down(const SizeSetting& setting) const {
     std::vector<SizeSetting> steps;
     if (setting.word_bits > least_word_bits) steps.push_back(with_words(setting, setting.word_bits - 1));
@@ -199,8 +202,8 @@ std::vector<SizeSetting> SizeSearch::steps_down(const SizeSetting& setting) cons
     return steps;
 }
 
-/// Goes on to what is one step smaller while that meets the goal: so much is certain of the machine found,
-/// whatever the search rests on.
+/// Goes on to a setting one step smaller while that meets the goal. This holds for the machine found even
+/// where the assumptions of the search fail.
 void SizeSearch::step_down() {
     std::optional<std::size_t> before;
     while (before != best_) {
@@ -228,7 +231,7 @@ std::optional<SizeTrial> SizeSearch::find() {
     return tried_[*best_];
 }
 
-/// After a search in vain, before it is called so: shorter words may be lucky where the longest came nearest.
+/// The last attempt of a search in vain: shorter words may be lucky where the longest came nearest.
 void SizeSearch::try_all_words() {
     std::vector<SizeSetting> settings;
     for (int words = most_word_bits - 1; words >= least_word_bits; --words)
@@ -237,7 +240,7 @@ void SizeSearch::try_all_words() {
 }
 
 const SizeTrial& SizeSearch::nearest() const {
-    // The goals reached (one that was not set always is), then how far.
+    // Compares the number of goals reached (one that was not set counts as reached), then the distance.
     const auto rank = [this](const SizeTrial& t) {
         const double psnr = t.accuracy.psnr_db;
         const double hits = -t.accuracy.wrong_hit_percent;

@@ -1,5 +1,5 @@
-// The search for the smallest machine that is accurate enough, apart from what a machine is: any model that
-// tells the storage and the accuracy of a setting can be searched.
+// The search for the smallest machine that is accurate enough. It works on any model that gives the storage
+// and the accuracy of a setting.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace raycell {
 constexpr int least_word_bits = 8;
 constexpr int most_word_bits = 32;
 
-/// One machine in question.
+/// The setting of one candidate machine.
 struct SizeSetting {
     HitTest hit = HitTest::edge;
     Normals normals = Normals::linear;
@@ -33,7 +33,7 @@ struct SizeSetting {
     }
 };
 
-/// What is asked for.
+/// The accuracy that is wanted.
 struct SizeGoal {
     double psnr_db = 0;              ///< at least
     double wrong_hit_percent = 100;  ///< at most
@@ -41,13 +41,14 @@ struct SizeGoal {
     bool met_by(const Accuracy& a) const {
         return a.psnr_db >= psnr_db && a.wrong_hit_percent <= wrong_hit_percent;
     }
-    /// Met, or missed by so little (1 dB, a fifth of the wrong hits) that a smaller machine may be lucky.
+    /// Met, or missed by so little (1 dB, a fifth of the wrong hits) that a smaller machine may meet it by
+    /// luck.
     bool nearly_met_by(const Accuracy& a) const {
         return a.psnr_db + 1 >= psnr_db && 0.8 * a.wrong_hit_percent <= wrong_hit_percent;
     }
 };
 
-/// What a run of a setting told.
+/// The result of running a setting.
 struct SizeTrial {
     SizeSetting setting;
     StorageCounts storage;
@@ -64,20 +65,20 @@ inline SizeCost cost_of(const StorageCounts& storage) { return {storage.max_cell
 class SizeModel {
   public:
     virtual ~SizeModel() = default;
-    /// What the setting stores, cheaply: nothing is traced.
+    /// What the setting stores. Cheap: nothing is traced.
     virtual StorageCounts storage(const SizeSetting& setting) const = 0;
     virtual SizeTrial run(const SizeSetting& setting) const = 0;
 };
 
-/// Coarse to fine: hit tests, then normals and shadows with the longest words, then word bits, then depth
-/// levels. Only what could be smaller than the smallest found so far is run. Rests on two things that are
-/// nearly so (SizeGoal::nearly_met_by): more word bits are not worse; and at rungs with a plane more depth
-/// levels are not worse. Whatever becomes of that, the machine found is the smallest of all that were run and
-/// met the goal, and nothing one step smaller meets it. The settings tried, and their order, depend on the
-/// model alone.
+/// Searches from coarse to fine: hit tests, then normals and shadows with the longest words, then word bits,
+/// then depth levels. Runs only what could be smaller than the smallest machine found so far. Relies on two
+/// assumptions that are nearly true (SizeGoal::nearly_met_by): more word bits are not worse, and at rungs
+/// with a plane more depth levels are not worse. Even where they fail, the machine found is the smallest of
+/// all that were run and met the goal, and nothing one step smaller meets it. The settings tried, and their
+/// order, depend on the model alone.
 class SizeSearch {
   public:
-    /// `levels`: what may be tried, most first, not empty.
+    /// `levels`: numbers of depth levels to try, most first, not empty.
     SizeSearch(const SizeModel& model, const SizeGoal& goal, std::vector<int> levels);
 
     /// The smallest setting that meets the goal, if any does. Call once.
@@ -89,11 +90,11 @@ class SizeSearch {
     const SizeTrial& nearest() const;
 
   private:
-    /// A hit test with its normals and shadows, which may meet the goal as far as is known.
+    /// A hit test with its normals and shadows that, as far as is known, may meet the goal.
     struct Combination {
-        SizeSetting setting;      ///< with the longest words, and the depth levels that suit it best then
-        std::vector<int> levels;  ///< worth trying beside those, most first
-        int least_words = least_word_bits;  ///< shorter ones missed the goal clearly with more levels
+        SizeSetting setting;      ///< with the longest words and the depth levels that are best with them
+        std::vector<int> levels;  ///< depth levels worth trying beside those, most first
+        int least_words = least_word_bits;  ///< with more levels, shorter words clearly missed the goal
     };
 
     void run_all(const std::vector<SizeSetting>& settings);

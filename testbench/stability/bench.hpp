@@ -28,7 +28,7 @@ class Random {
 
 NumberSettings exact_numbers();
 NumberSettings fixed_numbers(int word_bits);
-/// exact, and words of these lengths.
+/// Exact arithmetic, and words of these lengths.
 std::vector<NumberSettings> exact_and(const std::vector<int>& word_bits);
 /// "exact" or "fixed 20".
 std::string name_of(const NumberSettings& numbers);
@@ -68,16 +68,16 @@ class Share {
     std::int64_t all_ = 0;
 };
 
-/// Angle between two directions, radians; sound for small ones.
+/// Angle between two directions, radians; accurate for small ones, too.
 double angle_between(const dvec3& a, const dvec3& b);
 
 /// An empty cube seen from infinity, one matt white object.
 CellScene empty_scene(int width, int height, double depth, int levels);
 std::uint32_t add_object(CellScene& scene, const Material& material);
 void add_polygon(CellScene& scene, std::uint32_t object, std::vector<dvec3> vertices);
-/// The plane through a point as far as the cube reaches.
+/// Adds the part of a plane through a point that lies in the cube.
 void add_cross_section(CellScene& scene, std::uint32_t object, const dvec3& point, const dvec3& normal);
-/// A sphere of triangles with vertex normals pointing outwards.
+/// Adds a sphere of triangles whose vertex normals point outwards.
 void add_ball(CellScene& scene, std::uint32_t object, const dvec3& centre, double radius, int slices,
               int stacks);
 
@@ -106,7 +106,7 @@ struct Placed {
     int x = 0;
     int y = 0;
 };
-/// A ray from a point inside the cube; as a cell holds it, but not one that leaves a polygon.
+/// A ray from a point inside the cube, as a cell holds it; it leaves no polygon.
 Placed start_ray(const Loaded& loaded, const dvec3& origin, const dvec3& direction);
 
 /// What a ray met.
@@ -116,11 +116,11 @@ struct Landing {
     std::uint32_t polygon = no_polygon;
     int x = 0;
     int y = 0;
-    double t = 0;  ///< from where the walk began
+    double t = 0;  ///< distance from the start of the walk, cell widths
     dvec3 point{0, 0, 0};
 };
-/// Sends a ray from cell to cell as the untimed machine does; nothing if it leaves the cube or reaches its
-/// source. Throws std::logic_error for a ray that makes more hops than the array has rows and columns.
+/// Sends a ray from cell to cell as the untimed machine does. Returns nothing if it leaves the cube or
+/// reaches its source. Throws std::logic_error for a ray that makes more than 2 * (width + height) + 4 hops.
 std::optional<Landing> walk(const Loaded& loaded, Placed placed);
 
 }  // namespace raycell::stability

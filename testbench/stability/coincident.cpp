@@ -1,4 +1,4 @@
-// Surfaces in one place: which of them a ray meets, where two lie in one plane and where two cross.
+// Coincident surfaces: which of them a ray meets, where two lie in one plane and where two cross.
 #include <cmath>
 
 #include "model/truth/truth.hpp"
@@ -10,7 +10,8 @@ namespace {
 
 constexpr double size = 16;
 
-/// A scene of polygons 0 and 1, and a point (x, y) on the screen through which a ray along z meets both.
+/// A scene of polygons 0 and 1. `aim` gives points (x, y) on the screen; a ray along z through them meets
+/// both.
 struct Pair {
     CellScene scene;
     std::function<dvec2(Random&)> aim;
@@ -38,7 +39,8 @@ Pair coplanar(bool same_outline, bool tilted, Random& random) {
             same_outline ? dvec3(0) : random.uniform(-0.5, 0.5) * u + random.uniform(-0.5, 0.5) * v;
         add_polygon(pair.scene, 0, square(centre + shift, u, v, 4));
     }
-    // A disc of the plane that both squares contain, seen along z: its shadow contains this one.
+    // Both squares contain a disc of their plane. Seen along z, its projection contains the disc that is
+    // drawn from.
     const double reach = 2.5 * normal.z;
     pair.aim = [=](Random& r) {
         const double turn = r.uniform(0, 2 * pi);
@@ -48,8 +50,8 @@ Pair coplanar(bool same_outline, bool tilted, Random& random) {
     return pair;
 }
 
-/// Two planes through the whole cube that cross at an angle, along a line across the middle; `aim` gives
-/// points at log-uniform distances of that line, as seen on the screen.
+/// Two planes through the whole cube that cross at an angle, along a line across the middle. `aim` gives
+/// points on the screen at log-uniform distances from that line.
 struct Crossing {
     CellScene scene;
     dvec2 along;
@@ -67,7 +69,7 @@ Crossing make_crossing(double angle, Random& random) {
     crossing.along = {std::cos(turn), std::sin(turn)};
     crossing.across = {-std::sin(turn), std::cos(turn)};
     const dvec3 across{crossing.across, 0};
-    // At a right angle both are 45 degrees steep; otherwise they lean together by up to 20.
+    // At a right angle both planes are 45 degrees steep; otherwise both lean by up to 20 degrees more.
     const double lean = angle < 1.5 ? random.uniform(-0.35, 0.35) : 0;
     for (const double half : {-0.5, 0.5}) {
         const double tilt = lean + half * angle;
@@ -87,7 +89,7 @@ struct Winners {
     Share truths_lower_id;
     Share as_truth;
     Share other_again;  ///< a second machine from the same scene says otherwise
-    Errors wrong_at;    ///< crossing: how far from the line the wrong one is seen
+    Errors wrong_at;    ///< crossing planes: distance from the line where the wrong one is seen
 };
 
 void compete(const Loaded& loaded, const Loaded& again, const TruthRenderer& truth, const dvec2& at,

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double tile = 3;  ///< width of a polygon of the mirror, cells
 
-/// A flat mirror of 5 by 5 polygons, tilted at random: nothing that it reflects can meet it again.
+/// A flat mirror of 5 by 5 polygons, tilted at random. A ray that it reflects can't meet it again.
 struct Mirror {
     CellScene scene;
     dvec3 corner;
@@ -44,7 +44,7 @@ struct Reflections {
     Errors angle;
 };
 
-/// A ray that arrives at a point of the mirror's polygon (i, j), as it stands in the cell there.
+/// Reflects a ray at a random point of an inner polygon of the mirror, in the cell there.
 void reflect_at(const Loaded& loaded, const Mirror& mirror, double grazing, Random& random,
                 Reflections& sum) {
     const int i = 1 + int(random.uniform(0, 3));

@@ -1,4 +1,4 @@
-// What increments add up to over a row of 1024 cells: rays and spans.
+// Errors of increments added up over a row of 1024 cells, for rays and spans.
 #include <cmath>
 
 #include "testbench/stability/bench.hpp"
@@ -10,7 +10,7 @@ namespace {
 constexpr int row_cells = 1024;
 constexpr int all_word_bits[] = {8, 10, 12, 14, 16, 18, 20, 22, 24, 28, 32};
 
-/// A ray's way over a row: y and z it should have gone, from the wanted direction.
+/// The way that a ray should take over a row.
 struct Way {
     dvec3 origin;     ///< in the first cell
     dvec3 direction;  ///< x is the largest component, so that a step to the east is the longest
@@ -27,10 +27,10 @@ double off_line(const dvec3& reached, const dvec3& origin, const dvec3& directio
                     std::abs(reached.z - (origin.z + t * direction.z)));
 }
 
-/// Walks as a cell does, until the ray has crossed 1024 columns.
+/// How far a ray is off after it has walked across 1024 columns as cells walk, cell widths.
 struct Drift {
-    double wanted;  ///< off the line that was asked for
-    double own;     ///< off the line of the direction that the ray carries
+    double wanted;  ///< from the wanted line
+    double own;     ///< from the line of the direction that the ray carries
 };
 Drift walked(const Way& way, const Arithmetic& arithmetic) {
     Ray ray;
@@ -51,7 +51,7 @@ Drift walked(const Way& way, const Arithmetic& arithmetic) {
     return {off_line(reached, way.origin, way.direction), off_line(reached, start, ray.direction)};
 }
 
-/// A plain DDA: a column at a time, y and z by increments of f fraction bits. Its words hold the row's
+/// A plain DDA: a column per step, y and z by increments of f fraction bits. Its integer bits hold the row's
 /// places.
 constexpr int plain_integer_bits = 11;
 double plain_dda(const Way& way, int fraction_bits) {
@@ -110,7 +110,7 @@ Report study_dda_drift(const Effort& effort) {
 
 namespace {
 
-/// Cuts what a span adds from cell to cell to the word alone, as if loading had no guard bits.
+/// Cuts the increments of a span to the word length, as if loading had no guard bits.
 void cut_increments(Span& span, const Formats& formats) {
     const int integer_bits = formats.loading.integer_bits();
     const Format word(integer_bits, formats.word_bits - integer_bits);

@@ -1,4 +1,4 @@
-// Two facing mirrors: what errors grow to from generation to generation.
+// Two facing mirrors: how errors grow from generation to generation.
 #include <memory>
 
 #include "model/picture/compare.hpp"
@@ -32,7 +32,7 @@ Corridor make_corridor(Random& random) {
         add_cross_section(corridor.scene, object, corridor.middle + side * corridor.normal, corridor.normal);
     }
     corridor.scene.sources.push_back(
-        {corridor.middle + dvec3(9, 2, 3), dvec3(0.5)});  // all of it together stays below 8
+        {corridor.middle + dvec3(9, 2, 3), dvec3(0.5)});  // the sum of all intensities stays below 8
     return corridor;
 }
 
@@ -41,8 +41,8 @@ struct Generation {
     Errors intensity;
 };
 
-/// Follows one ray through its reflections: how far each hit lies from the truth's, and how far the intensity
-/// of a tree that ends there is off.
+/// Follows one ray through its reflections. Adds the distance of each hit from the truth's, and the intensity
+/// error of a tree that ends there.
 void follow(const Loaded& loaded, const std::vector<std::unique_ptr<TruthRenderer>>& truths,
             const dvec3& origin, const dvec3& direction, std::vector<Generation>& generations) {
     const TruthRenderer& truth = *truths.front();
@@ -57,7 +57,7 @@ void follow(const Loaded& loaded, const std::vector<std::unique_ptr<TruthRendere
             set_up_hit(loaded.context(), store, landing->ray, landing->hit, landing->x, landing->y));
         if (truths[i]) {
             generations[i].position.add(glm::distance(landing->point, hit->position));
-            dvec3 answer(0);  // nothing comes back to the last one
+            dvec3 answer(0);  // the last generation gets no answer
             for (std::size_t h = hits.size(); h-- > 0;) {
                 answer = shade_hit(loaded.context(), hits[h], 1, hits[h].facing, answer, dvec3(0));
             }
@@ -98,7 +98,7 @@ std::vector<Generation> follow_all(const NumberSettings& numbers, const Effort& 
     return generations;
 }
 
-/// The picture of the project's own scene with trees so deep, against the truth with the same.
+/// Accuracy of a scene's picture with trees of this many generations, against the truth with the same.
 Accuracy picture_error(const Scene& scene, const NumberSettings& numbers, int generations, int cells) {
     PictureSettings settings;
     settings.width = settings.height = cells;

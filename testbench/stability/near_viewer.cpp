@@ -39,7 +39,7 @@ CellScene room(double size, double distance) {
     return scene;
 }
 
-/// Hops that primary rays make: without sources there are no others.
+/// Hops per primary ray; without sources there are no other rays.
 double primary_hops(CellScene scene, const PictureSettings& settings) {
     scene.sources.clear();
     Loaded unlit(std::move(scene), settings);

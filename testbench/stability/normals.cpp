@@ -1,4 +1,4 @@
-// Interpolated normals after the cell has made them unit again, by word and by the root's method.
+// Interpolated normals after the cell has normalised them, by word length and method of the root.
 #include <cmath>
 
 #include "testbench/stability/bench.hpp"
@@ -54,7 +54,7 @@ void shoot(const Facet& facet, const NumberSettings& numbers, bool at_zero_line,
         outcome.length.add(std::abs(glm::length(got) - 1));
         const dvec3 wanted = polygon.normal.at(project(aim, polygon.drop));
         const double off = at_zero_line ? 0 : angle_between(got, wanted);
-        outcome.angle.add(std::min(off, pi - off));  // it is turned to the ray
+        outcome.angle.add(std::min(off, pi - off));  // the cell turns it to the ray
         const double from_plane = angle_between(got, facet.plane_normal);
         outcome.fell_back.add(std::min(from_plane, pi - from_plane) < 1e-3);
     }

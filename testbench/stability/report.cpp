@@ -10,7 +10,7 @@ namespace raycell::stability {
 
 namespace {
 
-/// As a CSV file holds it: quoted where a comma would end it.
+/// A field of a CSV file: quoted if it contains a comma.
 std::string quoted(const std::string& words) {
     return words.find(',') == std::string::npos ? words : '"' + words + '"';
 }

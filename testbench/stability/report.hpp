@@ -18,7 +18,7 @@ class Table {
         Value(double number) : number_(number) {}
         Value(std::int64_t count) : words_(std::to_string(count)), counted_(true) {}
         bool is_words() const { return !words_.empty() && !counted_; }
-        /// Numbers that are no counts with so many digits.
+        /// As text; numbers that are not counts get this many significant digits.
         std::string spelt(int digits) const;
 
       private:

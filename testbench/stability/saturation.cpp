@@ -49,7 +49,7 @@ CellScene make_scene(const Inputs& in) {
 struct Outcome {
     std::int64_t not_numbers = 0;  ///< channels
     std::int64_t infinite = 0;
-    std::int64_t negative = 0;  ///< what a word that wraps round would show
+    std::int64_t negative = 0;  ///< as a word that wraps round would be
     std::int64_t saturated = 0;
     double largest_error = 0;  ///< of channels clamped to 0 to 1
     double rms_error = 0;
@@ -77,7 +77,7 @@ Outcome judge(const Picture& picture, const Picture& truth, double most) {
     return outcome;
 }
 
-/// Numbers of the scene that the machine's formats cut off at their end.
+/// How many numbers of the scene saturate in the machine's formats.
 std::int64_t saturated_inputs(const Loaded& loaded) {
     const Context& context = loaded.context();
     if (context.arithmetic.exact()) return 0;
@@ -132,7 +132,7 @@ struct Totals {
     std::string worst_text;
 };
 
-/// One input through its values in one arithmetic.
+/// Runs one input through its values in one arithmetic.
 void run_sweep(const Sweep& sweep, const NumberSettings& numbers, Table& table, Totals& totals) {
     double before = 0;
     double error_limit_at = -1;
@@ -153,7 +153,7 @@ void run_sweep(const Sweep& sweep, const NumberSettings& numbers, Table& table, 
                    outcome.rms_error, outcome.mean, double(rays.ray_hops) / sent});
         totals.unsound += outcome.not_numbers + outcome.infinite;
         totals.negative += outcome.negative;
-        // A last bit more or less is rounding, a picture gone dark is a word gone round.
+        // A difference in the last bit is rounding; a picture that turns dark is a word that wrapped round.
         if (sweep.brightens && outcome.mean < before - 0.02) ++totals.darker;
         before = outcome.mean;
         totals.longest_way = std::max(totals.longest_way, double(rays.ray_hops) / sent);

@@ -1,4 +1,4 @@
-// Rays against a plane that cuts the whole cube in two: whatever crosses it unhurt is a leak.
+// Rays against a plane that cuts the whole cube in two: a ray that crosses it without a hit is a leak.
 #include <cmath>
 
 #include "testbench/stability/bench.hpp"
@@ -11,8 +11,8 @@ constexpr int size = 16;
 constexpr double depth = 64;
 constexpr int levels = 1024;
 
-/// A ray from one side of the plane to the other, sideways (at most 0.5 in depth to 1 across), so that steep
-/// planes are met by many cells' worth of depth in one step.
+/// A ray from one side of the plane to the other, sideways (at most 0.5 in depth to 1 across), so that a
+/// steep plane spans many cell widths of depth within one step.
 struct Shot {
     dvec3 origin;
     dvec3 direction;
@@ -22,7 +22,7 @@ bool inside(const dvec3& p) {
     return p.x > 0 && p.y > 0 && p.z > 0 && p.x < size && p.y < size && p.z < depth;
 }
 
-/// Never gives up long: half of the plane's points have room on both sides.
+/// Ends soon: half of the plane's points have room on both sides.
 Shot shoot(const dvec3& point, const dvec3& normal, Random& random) {
     const dvec3 aside = std::abs(normal.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
     const dvec3 u = glm::normalize(glm::cross(normal, aside));
@@ -33,7 +33,8 @@ Shot shoot(const dvec3& point, const dvec3& normal, Random& random) {
         const dvec3 way = glm::normalize(dvec3(std::cos(turn), std::sin(turn), random.uniform(-0.5, 0.5)));
         const double back = random.uniform(0.5, 6);
         const dvec3 origin = on_plane - back * way;
-        // Both ends clear of the plane and inside: a start on it, or an end in the next cell, says nothing.
+        // Both ends must lie inside and clear of the plane: a start on it, or an end in the next cell, proves
+        // nothing.
         if (std::abs(glm::dot(normal, way)) * back < 0.05) continue;
         if (inside(on_plane) && inside(origin) && inside(on_plane + 0.5 * way)) return {origin, way};
     }

@@ -7,7 +7,7 @@
 namespace raycell::stability {
 namespace {
 
-/// A triangle with three corners on a circle, anywhere in the middle cell and at any attitude.
+/// A triangle with three corners on a circle, anywhere in the middle cell and in any orientation.
 struct Small {
     CellScene scene;
     dvec3 centre;
@@ -48,7 +48,7 @@ void shoot(const Loaded& loaded, const Small& small, Random& random, Outcome& ou
     const Polygon& polygon = loaded.scene.polygons[0];
     dvec3 way = random.direction();
     while (std::abs(glm::dot(way, polygon.plane.n)) < 0.2) way = random.direction();
-    // Inside, clear of the edges by a tenth of the height.
+    // A point inside, clear of the edges by a tenth of the height.
     const double b = random.uniform(0.1, 0.8);
     const double c = random.uniform(0.1, 0.9 - b);
     const dvec3 aim = small.corners[0] * (1 - b - c) + small.corners[1] * b + small.corners[2] * c;
@@ -63,7 +63,7 @@ void shoot(const Loaded& loaded, const Small& small, Random& random, Outcome& ou
         outcome.normal.add(std::min(off, pi - off));
         outcome.flat.add(store.voxels[landing->hit.voxel].normal.du == dvec3(0));
     }
-    // Beside it: the triangle reaches half of its size from the centre.
+    // A point beside it: the triangle reaches only half of its size from the centre.
     const double turn = random.uniform(0, 2 * pi);
     const dvec3 beside = small.centre + small.size * (std::cos(turn) * small.u + std::sin(turn) * small.v);
     outcome.false_hits.add(walk(loaded, start_ray(loaded, beside - 3.0 * way, way)).has_value());
