@@ -1,4 +1,4 @@
-"""Studies: what is measured of the machine and of the simulator, and the tables and charts that come of it."""
+"""Studies: measurements of the machine and of the simulator, and their tables and charts."""
 import os
 
 os.environ["MPLBACKEND"] = "Agg"  # charts are files: no display is needed

@@ -1,4 +1,4 @@
-"""What is behind scripts/study: finds the study that the user named and hands it the words after the name."""
+"""The entry point of scripts/study: calls the study that the user named with the words after the name."""
 import importlib
 import pathlib
 import sys

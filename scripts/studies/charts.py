@@ -14,9 +14,9 @@ def panels(rows, columns, width, height, **how):
 
 
 def finish(figure, title, handles, dpi, *paths):
-    """Title above the panels, legend below them; a file for each path."""
+    """Puts the title above the panels and the legend below them, and writes a file for each path."""
     height = figure.get_figheight()
-    figure.suptitle(title, fontsize=11, y=1 - 0.1 / height).set_in_layout(False)  # its room is reckoned below
+    figure.suptitle(title, fontsize=11, y=1 - 0.1 / height).set_in_layout(False)  # its room is added below
     figure.legend(handles=handles, loc="lower center", ncol=min(len(handles), 12), frameon=False, columnspacing=1.4,
                   handletextpad=0.4)
     title_inches = 0.15 + 0.2 * len(title.splitlines())
@@ -37,7 +37,7 @@ def count_axis(axis, ticks=5):
 
 
 def logarithmic_axis(axis):
-    """With plain numbers at 1, 2, 3 and 5."""
+    """Makes the x axis logarithmic, with plain numbers at 1, 2, 3 and 5."""
     axis.set_xscale("log")
     axis.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=[1, 2, 3, 5]))
     axis.xaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(thousands))

@@ -12,7 +12,7 @@ class Jobs:
         self.program, self.folder = root / "build" / "raycell", folder
 
     def render(self, scene, *words):
-        """The run's JSON and what it took."""
+        """Renders a scene. Returns the run's JSON and its cost."""
         print("raycell render", scene, *words, file=sys.stderr, flush=True)
         return programs.render(self.program, self.folder / f"{scene}.nff", *words)
 

@@ -49,7 +49,7 @@ def bits_table(results):
 
 
 def draw(root, cache, results, scene):
-    from matplotlib import pyplot as plt  # only where it is needed
+    from matplotlib import pyplot as plt  # needed only here
     figure, axes = plt.subplots(2, len(RUNGS), figsize=(3.1 * len(RUNGS), 6.6))
     for column, rung in enumerate(reversed(RUNGS)):
         prefix = cache / f"{scene}.{rung}.host"

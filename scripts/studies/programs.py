@@ -1,5 +1,5 @@
-"""The one way in which a study runs a program to its end, and what the process took. (Sweeps, which run many at a time
-and can be stopped, build on it in sweeps/runs.py.)"""
+"""How a study runs one program to its end and measures its cost. Sweeps, which run many at a time and can be stopped,
+have their own way in sweeps/runs.py."""
 import dataclasses
 import json
 import os
@@ -19,7 +19,7 @@ class Done:
 
 
 class Failed(Exception):
-    """A program that ended with another exit code than 0: the command, the code and its last words."""
+    """A program ended with an exit code other than 0: the command, the code and its last output."""
 
 
 def measured(root):
@@ -44,7 +44,7 @@ def run(*words):
 
 
 def render(program, scene, *words):
-    """Renders a scene into a folder that is gone afterwards; returns its JSON and what the process took."""
+    """Renders a scene into a temporary folder; returns its JSON and the process's cost."""
     with tempfile.TemporaryDirectory() as folder:
         prefix = pathlib.Path(folder) / "run"
         done = run(program, "render", scene, "--quiet", "-o", prefix, *words)
@@ -52,7 +52,7 @@ def render(program, scene, *words):
 
 
 def spd_folder(study, root, folder):
-    """The folder of the SPD scenes: `folder`, or where it lies beside the project. Ends the study if there is none."""
+    """The folder of the SPD scenes: `folder`, or the one beside the project. Ends the study if it is missing."""
     folder = pathlib.Path(folder or root.parent / "shared" / "scenes" / "spd")
     if not folder.is_dir():
         sys.exit(f"study {study}: {folder} is missing; expected the folder of the SPD scenes")

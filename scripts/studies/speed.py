@@ -18,7 +18,7 @@ WAYS = {  # name: (rounds, options); the truth is a program of its own
     "timed, exact": (3, ["--engine", "timed", "--arithmetic", "exact"]),
     "timed, fixed 20": (3, ["--engine", "timed", "--arithmetic", "fixed", "--word-bits", "20"]),
 }
-LIMIT = 3  # a render in words may take so many times one in exact arithmetic
+LIMIT = 3  # most that a render in words may take, as a multiple of one in exact arithmetic
 PAIRS = [("untimed, fixed 20", "untimed, exact"), ("untimed, fixed 32", "untimed, exact"),
          ("timed, fixed 20", "timed, exact")]
 TWIN = {"untimed, exact": "timed, exact", "untimed, fixed 20": "timed, fixed 20"}
@@ -52,10 +52,10 @@ class Measurement:
 
 
 def measure(program, scene, cells, folder):
-    """All ways in turn, round by round, so that a machine that grows slower does so for all of them."""
+    """Runs all ways in turn, round by round, so that a machine that slows down affects all of them."""
     ways = {name: Measurement(program, scene, cells, folder / name.replace(", ", "-").replace(" ", "-"), options)
             for name, (_, options) in WAYS.items()}
-    for way in list(ways.values())[:4]:  # what the fast ones read is warm from here on
+    for way in list(ways.values())[:4]:  # warms the caches for the fast ways
         execute(way.command)
     for number in range(max(rounds for rounds, _ in WAYS.values())):
         for name, way in ways.items():
@@ -75,7 +75,7 @@ def psnr(program, way, truth):
 
 
 def sayings(name, report, reports):
-    """What the run's own report holds: cycles, buffers, a verdict on deadlock, the timed picture."""
+    """Whether the run's report has cycles, buffers and a verdict on deadlock, and which picture it is."""
     timed = report.get("cycles", {}).get("total", 0) > 0
     buffers = bool(report.get("buffers", {}).get("peak"))
     if name in TWIN:
@@ -110,7 +110,7 @@ HEAD = ["way", "wall seconds, median (range)", "processor seconds", "time, untim
 
 
 def fixed_part(results):
-    """The ratios of words to exact arithmetic, and whether they keep the limit."""
+    """The time ratios of words to exact arithmetic, and whether they are within the limit."""
     lines, largest = [], 0
     for scene, ways in results.items():
         both = [(ratio(ways[a], ways[b]), ratio(ways[a], ways[b], "processor")) for a, b in PAIRS]

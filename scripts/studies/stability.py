@@ -181,7 +181,7 @@ CHARTS = [slopes, dda_drift, span_drift, normals, grazing, critical, mirrors, of
 
 
 def draw(folder, file):
-    from matplotlib import pyplot as plt  # only where it is needed
+    from matplotlib import pyplot as plt  # needed only here
     figure, axes = plt.subplots(4, 3, figsize=(14, 15))
     for axis, chart in zip(axes.flat, CHARTS):
         chart(axis, Study(folder / f"{chart.__name__}.csv"))

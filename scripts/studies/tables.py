@@ -4,7 +4,7 @@ NOTHING = "–"
 
 
 def table(head, lines):
-    """A table of Markdown; lines of nothing but their first cell are left out."""
+    """A Markdown table, without the lines that have only their first cell."""
     kept = [line for line in lines if any(cell != NOTHING for cell in line[1:])]
     if not kept:
         return ""

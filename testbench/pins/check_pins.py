@@ -21,16 +21,16 @@ HERE = pathlib.Path(__file__).resolve().parent
 EXPECTED = HERE / "expected.json"
 SCENES = HERE.parent.parent / "scenes"
 DIGESTED = (".cells.csv", ".ledger.csv", ".vcd", ".waits.json")
-# Of the report, all that is counted in whole numbers: what a library's last bits could change is left out.
+# The parts of the report in whole numbers, which the last bits of a library can't change.
 COUNTED = ("stages", "units", "hops", "precast", "rays", "messages", "voxels", "message_bits", "storage_bits", "formats",
            "ray_store", "buffers", "deadlock", "activity", "loading")
-# More ranks than cores, and root, have to be allowed.
+# More ranks than cores and running as root must be allowed.
 MPIRUN = ["mpirun", "-q", "--oversubscribe", "-np"]
 MAY_BE_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 def read_cases():
-    """NAME -> words of the command, in the order of the file."""
+    """{name: words of the command}, in the order of the file."""
     cases = {}
     for line in (HERE / "cases.txt").read_text().splitlines():
         if line.strip() and not line.startswith("#"):
@@ -40,7 +40,7 @@ def read_cases():
 
 
 def command_of(words, programs, prefix):
-    """The words with programs and scenes by their paths."""
+    """The command of a case: its words with the paths of programs and scenes."""
     words = [w.replace("SCENES", str(SCENES)) for w in words]
     launcher = []
     if words[0] == "mpirun":
@@ -53,7 +53,7 @@ def digest(data):
 
 
 def run(words, programs):
-    """What one case gives: exit code, verdict, cycles, hashes, digests of its files."""
+    """Runs a case and returns its pin: exit code, verdict, cycles, hashes, digests of its files."""
     with tempfile.TemporaryDirectory(prefix="raycell_pins_") as folder:
         done = subprocess.run(command_of(words, programs, "pin"), cwd=folder, capture_output=True, text=True,
                               env={**os.environ, **MAY_BE_ROOT}, check=False)

@@ -14,12 +14,12 @@ DEPTHS = [64, 256, 1024, 4096]
 FRONT_CELLS, FULL_CELLS = 64, 128
 SIZES = [32, 64, 128, 256]
 TABLE_SIZES = [16, 32, 64, 128, 256]
-SIZES_AT_20_BITS = {"reciprocal": 64, "root": 64, "power": 32}  # which the program takes by itself
+SIZES_AT_20_BITS = {"reciprocal": 64, "root": 64, "power": 32}  # the program's own defaults
 
 
 @dataclasses.dataclass(frozen=True)
 class Configuration:
-    """Everything that the picture depends on and the sweep varies; the defaults are the program's, but for the array."""
+    """What the sweep varies of all that the picture depends on. The defaults are the program's, but for the array."""
 
     scene: str
     cells: int = FULL_CELLS
@@ -33,12 +33,12 @@ class Configuration:
     reciprocal: str = "newton"
     root: str = "newton"
     power: str = "tables"
-    reciprocal_table: int = 0  # what the word length needs
+    reciprocal_table: int = 0  # 0: what the word length needs
     root_table: int = 0
     power_table: int = 0
 
     def operators(self):
-        """The factors of the number section that differ from the default, as (name, value)."""
+        """The number settings that differ from the default, as (name, value)."""
         names = ["rounding", "reciprocal", "root", "power", "reciprocal_table", "root_table", "power_table"]
         default = Configuration(self.scene)
         return [(name, getattr(self, name)) for name in names if getattr(self, name) != getattr(default, name)]
@@ -50,7 +50,7 @@ class Configuration:
         return ".".join(parts)
 
     def exact(self):
-        """The same machine in exact arithmetic: what discretisation alone loses."""
+        """The same machine in exact arithmetic, which loses by discretisation alone."""
         return Configuration(self.scene, self.cells, self.hit, self.normals, self.shadows, "exact", depth=self.depth)
 
     def options(self):
@@ -107,7 +107,7 @@ def blocks():
 
 
 def quick_blocks():
-    """A dozen small runs of the project's own scenes, every part of the report in them."""
+    """A dozen small runs of the project's own scenes that fill every part of the report."""
     cells = 24
     timed = [Configuration(s, cells, hit, shadows=shadows) for s in OWN_SCENES for hit in ["edge", "depth"]
              for shadows in ["per-hit", "memo"]]
@@ -117,7 +117,7 @@ def quick_blocks():
 
 
 def runs_of(design):
-    """{configuration: timed}, each once, and for every one in words also its machine in exact arithmetic."""
+    """{configuration: timed}: each configuration once, with its machine in exact arithmetic."""
     runs = {}
     for timed, configurations in design.values():
         for configuration in configurations:

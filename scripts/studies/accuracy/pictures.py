@@ -6,14 +6,14 @@ from studies.accuracy.rows import name_of, pareto
 from studies.accuracy.tables import PAPER_CELL_BITS, PAPER_VOXEL_BITS
 from studies.charts import count_axis, finish, logarithmic_axis, panels
 
-COLOURS = dict(zip(RUNGS, ["#0072b2", "#009e73", "#e69f00", "#d55e00", "#7f7f7f"]))  # told apart by the colour-blind
+COLOURS = dict(zip(RUNGS, ["#0072b2", "#009e73", "#e69f00", "#d55e00", "#7f7f7f"]))  # fit for the colour-blind
 MARKERS = dict(zip(SHADOWS, ["o", "s", "^"]))
-TOP_DB = 100  # more is "equal" to the eye; drawn here
+TOP_DB = 100  # larger values look equal to the eye and are drawn here
 
 
 def draw_front(results, prefix):
-    """Cycles against error with the Pareto front, as PNG and SVG: for each scene a panel, and a narrow one to its right
-    for precasting, which takes many times the cycles."""
+    """Cycles against error with the Pareto front, as PNG and SVG: for each scene a panel, and to its right a narrow
+    one for precasting, which takes many times the cycles."""
     rows = -(-len(results.scenes) // 2)
     figure, axes = panels(rows, 4, 15.5, 5.4 * rows + 0.9, gridspec_kw={"width_ratios": [3.2, 1, 3.2, 1]})
     for index, axis in enumerate(axes.flat):
@@ -63,7 +63,7 @@ def draw_front_panel(axis, results, scene, precast):
 
 
 def label_front(axis, numbered):
-    """The numbers of the front's points; those that would print over each other share a label."""
+    """Writes the numbers of the front's points; numbers that would overlap share a label."""
     (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
     groups = []
     for number, row in numbered:
@@ -80,7 +80,7 @@ def label_front(axis, numbered):
 
 
 def draw_front_line(axis, front):
-    """The front as steps to its best point, and the key to its numbers where the panel is empty: over the front."""
+    """Draws the front as steps to its best point, and the key to its numbers in the empty part above the front."""
     cycles = [row.picture_cycles for row in front]
     axis.step(cycles, [min(row.psnr_total_db, TOP_DB) for row in front], where="post", color="black", linewidth=1,
               zorder=1)
@@ -94,7 +94,7 @@ def draw_front_line(axis, front):
 
 
 def draw_bits(results, path):
-    """Storage against error: what the paper reckons with is a line."""
+    """Storage against error; a line marks the paper's estimate."""
     kinds = [("fullest_cell_bits", "bits of the fullest cell", PAPER_CELL_BITS, "paper: 5 Kbyte per cell"),
              ("bits_per_voxel", "bits per voxel, mean", PAPER_VOXEL_BITS, "paper: 40 bytes per voxel")]
     figure, axes = panels(2, len(results.scenes), 3.9 * len(results.scenes) + 0.5, 8.4, sharey=True)
@@ -129,7 +129,7 @@ def draw_bits_line(axis, rows, kind, colour):
 
 
 def draw_split(results, path):
-    """The error split over the word length: a row per scene, a column per rung."""
+    """The two parts of the error over the word length: a row per scene, a column per rung."""
     kinds = [("psnr_discretisation_db", "discretisation: exact arithmetic against the truth", "#f0b080", 5),
              ("psnr_arithmetic_db", "arithmetic: words against exact arithmetic", "#7fb8e0", 5),
              ("psnr_total_db", "total: words against the truth", "black", 1.2)]

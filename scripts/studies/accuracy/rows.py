@@ -25,7 +25,7 @@ def row_of(configuration, record, exact_record):
 
 
 def write(path, runs, records):
-    """Rows in the order of the design; a run without its exact machine, which failed, has none."""
+    """Writes rows in the order of the design, without runs whose machine in exact arithmetic failed."""
     lines = [row_of(c, records[c], records[c.exact()]) for c in runs if c in records and c.exact() in records]
     write_csv(path, lines)
 
@@ -40,7 +40,7 @@ class Row(SweepRow):
 
     @property
     def picture_cycles(self):
-        """From the loaded array to the finished picture."""
+        """Cycles from the loaded array to the finished picture."""
         return self.precast_cycles + self.trace_cycles
 
 
@@ -72,7 +72,7 @@ class Results:
         return [row for row in rows if row]
 
     def front_points(self, scene):
-        """What the main chart shows: hit test x word bits x shadows x normals, timed, of one size."""
+        """The rows of the main chart: hit test x word bits x shadows x normals, timed, of one size."""
         points = []
         for row in self.rows.values():
             c = row.configuration
@@ -83,7 +83,7 @@ class Results:
 
 
 def pareto(points):
-    """Those that no other beats in both: fewer cycles and a smaller error; cheapest first."""
+    """Points that no other point beats in both cycles and error; fewest cycles first."""
     front = []
     for row in sorted(points, key=lambda r: (r.picture_cycles, -r.psnr_total_db)):
         if not front or row.psnr_total_db > front[-1].psnr_total_db:
@@ -98,7 +98,7 @@ def name_of(configuration):
 
 
 def fewest_bits(rows, least_db):
-    """Shortest word from which on every longer one reaches the least dB, too; None where none does."""
+    """The shortest word length that reaches `least_db`, as does every longer one; None if there is none."""
     fewest = None
     for row in reversed(rows):
         if row.psnr_total_db < least_db:

@@ -1,4 +1,4 @@
-"""Makes the runs of the accuracy sweep, each compared with the picture of its machine in exact arithmetic."""
+"""Makes the runs of the accuracy sweep and compares each with its machine in exact arithmetic."""
 import collections
 import dataclasses
 import json
@@ -29,7 +29,7 @@ class Sweep(Runner):
         return f"{configuration.label()}.{'timed' if self.runs[configuration] else 'untimed'}"
 
     def load(self, configuration):
-        """The finished run, or None; whatever is not the whole result of just this run counts as none."""
+        """The finished run's record, or None if there is no whole record of this very run."""
         record = self.cache.read(self.name_of(configuration))
         try:
             whole = (record["configuration"] == dataclasses.asdict(configuration)
@@ -56,7 +56,7 @@ class Sweep(Runner):
             self.release(configuration.exact())
 
     def make_apart(self, configuration):
-        """One run and its comparison with the exact machine's picture; stores and returns its record."""
+        """Makes a run and compares it with the exact machine's picture; stores and returns its record."""
         start = time.monotonic()
         timed = self.runs[configuration]
         exact = configuration.exact()
@@ -89,14 +89,14 @@ class Sweep(Runner):
         return self.cache.work / f"{exact.label()}.reference.exr"
 
     def exact_report(self, exact):
-        """Renders the machine in exact arithmetic unless its picture lies there already; its lock is held."""
+        """Renders the machine in exact arithmetic unless its picture exists already. The caller holds its lock."""
         prefix = self.cache.work / f"{exact.label()}.reference"
         if not self.picture_of(exact).exists():
             self.render(exact, "untimed", prefix)
         return json.loads(prefix.with_name(prefix.name + ".json").read_text())
 
     def release(self, exact):
-        """The last one that needed the exact picture deletes it."""
+        """Deletes the exact picture once no other run needs it."""
         with self.guard:
             self.exact_users[exact] -= 1
             last = self.exact_users[exact] == 0
@@ -110,7 +110,7 @@ class Sweep(Runner):
                 pathlib.Path(f"{prefix}{suffix}").unlink(missing_ok=True)
 
     def render(self, configuration, engine, prefix):
-        """Codes 3 and 4 are verdicts of a run, and the report says which."""
+        """Renders and returns the report. Exit codes 3 and 4 are verdicts, which the report tells."""
         scene = self.scenes[configuration.scene]
         self.execute([str(self.program), "render", str(scene), "-o", str(prefix), "--engine", engine, "--truth",
                       "--quiet", *configuration.options()], codes=(0, 3, 4))

@@ -1,4 +1,4 @@
-"""The sweep behind scripts/study accuracy: which runs, making them, and what is written from them."""
+"""The sweep of scripts/study accuracy: its runs, how they are made, and what is written from them."""
 import pathlib
 import sys
 
@@ -64,7 +64,7 @@ class AccuracySweep(Command):
             print(f"{self.places.csv}; no timed run in it, so no tables and charts", file=sys.stderr)
 
     def draw(self, results):
-        from studies.accuracy.pictures import draw_bits, draw_front, draw_split  # matplotlib: only where it is needed
+        from studies.accuracy.pictures import draw_bits, draw_front, draw_split  # matplotlib is needed only here
         charts = self.places.charts
         draw_front(results, charts / "accuracy")
         draw_bits(results, charts / "accuracy_bits.png")

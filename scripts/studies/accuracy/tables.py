@@ -1,4 +1,4 @@
-"""docs/measured/accuracy.md: every table of it from the rows of accuracy.csv."""
+"""Writes docs/measured/accuracy.md: all its tables are made from the rows of accuracy.csv."""
 from studies.accuracy.design import (OPERATOR_SCENES, OWN_SCENES, RUNGS, SHADOWS, SIZES_AT_20_BITS, Configuration,
                                    operator_variants)
 from studies.accuracy.rows import fewest_bits, name_of, pareto
@@ -67,7 +67,7 @@ def front_table(results):
 
 
 def machine_table(results, cells):
-    """Hit tests and shadow modes at the default word: cycles and dB, in one array size."""
+    """Cycles and dB of hit tests and shadow modes at the default word length, for one array size."""
     lines = []
     for hit in RUNGS:
         for shadows in SHADOWS:
@@ -81,7 +81,7 @@ def machine_table(results, cells):
 
 
 def load_table(results):
-    """Over all timed runs of a word length and size, whatever else they vary; a range where that matters."""
+    """Load cycles of all timed runs of a word length and size; a range where they depend on other factors."""
     timed = [row for row in results.rows.values() if row.timed]
     lines = []
     for cells in results.sizes:
@@ -109,7 +109,7 @@ def normals_table(results):
 
 
 def variant_name(variant):
-    """What differs from the default, each operator with the size of its table."""
+    """What differs from the default; operators come with the size of their tables."""
     changed = [name for name, _ in variant.operators()]
     if not changed:
         return "default: reciprocal `newton` (64), root `newton` (64), power `tables` (32)"

@@ -1,4 +1,4 @@
-"""Whole jobs: how what they cost grows with the array, the depth, the scene and the rays."""
+"""How the cost of whole jobs grows with the array, the depth, the scene and the rays."""
 import pathlib
 import re
 import sys
@@ -31,15 +31,15 @@ class Job(typing.NamedTuple):
 
 
 class Design(typing.NamedTuple):
-    """Which jobs a growth is measured with."""
+    """The jobs with which growth is measured."""
     sides: list
-    side: int  # of the other series
+    side: int  # cells a side, in the other series
     depths: list
     max_depths: list
     precast_side: int  # cells a side; on larger arrays precast alone takes longer than all the rest
 
     def jobs(self, scenes, families):
-        """Each once, though it may stand in several series; the short ones first."""
+        """Each job once, even if several series have it; small arrays first."""
         wanted = [Job(scene, side) for side in self.sides for scene in scenes]
         wanted += [Job(scene, self.side, depth=depth) for scene in scenes for depth in self.depths]
         wanted += [Job(scene, self.side) for scene in families]
@@ -49,7 +49,7 @@ class Design(typing.NamedTuple):
 
 
 def scenes_of(folder, root):
-    """Those of the series, and the families of the SPD; the project's own where the SPD is not here."""
+    """The scenes of the series and the families of the SPD; without the SPD, the project's own scene."""
     found = [folder / f"{name}.nff" for name in GROWING]
     scenes = [path for path in found if path.is_file()] or [root / "scenes" / "still_life.nff"]
     families = [path for name in FAMILIES for path in sorted(folder.glob(f"{name}-s*.nff"))]
@@ -62,7 +62,7 @@ def count_primitives(scene):
 
 
 def run_job(program, job):
-    """What one run tells, and what the process took as the system counts it."""
+    """Runs a job. Returns figures of its report, and the process's cost as the system counts it."""
     try:
         report, done = programs.render(program, job.scene, "--cells", f"{job.side}x{job.side}", "--depth", job.depth,
                                        "--max-depth", job.max_depth, "--shadows", job.shadows)
@@ -82,7 +82,7 @@ def run_job(program, job):
 
 
 def measure_growth(program, jobs, rounds, rows):
-    """Round by round, so that what disturbs a while disturbs a round of all. Makes only the runs that `rows` lacks."""
+    """Measures in rounds, so that a disturbance hits a round of all jobs. Makes only the runs that `rows` lacks."""
     makers = {scene: made_by(program, scene) for scene in {job.scene for job in jobs}}
     runs = [(job, turn) for turn in range(rounds) for job in jobs]
     missing = [(job, turn) for job, turn in runs if not rows.have(job.key(turn), makers[job.scene])]

@@ -8,17 +8,17 @@ from studies.tables import table
 
 COLOURS = {"load": "#4477aa", "precast": "#ccbb44", "trace": "#ee6677"}
 MARKERS = "os^Dv"
-LEAST_LINE_SIDE = 64  # cells a side; below it a run is over before its cost shows
+LEAST_LINE_SIDE = 64  # cells a side; shorter runs end before their cost shows
 
 
 class Series:
-    """A row of panels: what varies, and the rows in which only that does."""
+    """A row of panels: the factor that varies, and the rows in which only this factor varies."""
 
     def __init__(self, title, axis, varies, rows):
         self.title, self.axis, self.varies, self.rows = title, axis, varies, rows
 
     def lines(self):
-        """(name, shadows) to rows by what varies."""
+        """{(name, shadows): rows in the order of the factor that varies}"""
         lines = {}
         for row in self.rows:
             name = row["scene"].split("-")[0] if self.varies == "primitives" else row["scene"]
@@ -36,7 +36,7 @@ def medians(rows):
 
 
 def series_of(rows, side):
-    """`side`: of all series but the first."""
+    """The series that the rows hold. `side`: cells a side in all series but the first."""
     usual = {"side": side, "depth": LEVELS, "max_depth": RAYS}
 
     def alone(varies, scenes):
@@ -72,7 +72,7 @@ def series_table(series):
 
 
 def fit_line(points):
-    """Slope and factor of the straight line through the logarithms of (x, y), least squares."""
+    """Slope and factor of the least-squares line through the logarithms of (x, y)."""
     logs = [(math.log(x), math.log(y)) for x, y in points]
     mean_x, mean_y = (statistics.fmean(values) for values in zip(*logs))
     slope = sum((x - mean_x) * (y - mean_y) for x, y in logs) / sum((x - mean_x) ** 2 for x, _ in logs)
@@ -124,7 +124,7 @@ def write_growth_table(path, rows, side):
 def draw_line(axis, series, quantity):
     names = sorted({name for name, _ in series.lines()})
     for (name, shadows), rows in series.lines().items():
-        # Loading and tracing are of the runs without precast, where there are such.
+        # Loading and tracing come from the runs without precast.
         phases = ["precast"] if shadows == "precast" else ["load", "trace"]
         for phase in phases:
             points = [(row[series.varies], row[f"{quantity}_{phase}"]) for row in rows]

@@ -18,7 +18,7 @@ FIELDS = ["hops", "hops_per_second", "cycles_per_second", "build_seconds", "byte
 JOB_KEYS = ["scene", "granularity", "side"]
 JOB_FIELDS = ["hops", "build", "load", "precast", "trace", "hops_per_second", "bytes_per_cell", "peak_memory_bytes"]
 PARTS = ["cases", "jobs", "growth"]
-LARGE = 512  # cells a side; from there on modules take minutes to build: a third of the rounds
+LARGE = 512  # cells a side; from here on modules take minutes to build, so only a third of the rounds is made
 LARGEST_MODULE_JOB = 128  # cells a side; above it modules take minutes
 
 
@@ -34,7 +34,7 @@ def run_case(program, case, side):
 
 
 def measure_cases(program, sides, rounds, rows):
-    """A round of an array that was broken off is made again as a whole: ratios are of runs that follow each other."""
+    """Measures all cases. An unfinished round is repeated as a whole: ratios need runs that follow each other."""
     maker = made_by(program)
     keys = []
     for side in sides:
@@ -134,7 +134,7 @@ def main(root, words):
     results.mkdir(parents=True, exist_ok=True)
     if not options.from_csv:
         measure(root, options, results)
-    # Matplotlib only where it is needed.
+    # Imported here, since only this needs matplotlib.
     from studies.bench.growth_tables import line_rows, write_growth_chart, write_growth_table, write_line_chart
     from studies.bench.tables import write_chart, write_table
     rows = read_numbers(results / "bench.csv", {"case"})

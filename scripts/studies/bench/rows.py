@@ -1,4 +1,4 @@
-"""Rows of the benchmark's CSV files: kept one by one, so that a stopped bench goes on where it was."""
+"""The rows of the benchmark's CSV files, saved one by one so that a stopped bench can go on."""
 import csv
 import hashlib
 import os
@@ -14,7 +14,7 @@ def processor_name():
 
 
 def made_by(*files):
-    """A hash of what a row depends on besides its key: the program, its scene, the machine that ran it."""
+    """A hash of what a row depends on besides its key: the files (program, scene) and the machine that ran it."""
     digest = hashlib.sha256(f"{platform.node()} {processor_name()}".encode())
     for path in files:
         digest.update(path.read_bytes())
@@ -33,8 +33,8 @@ def read_rows(path):
 
 
 class Rows:
-    """The rows of PATH. New ones are appended to PATH.part at once; finish() makes them PATH. What either file holds of
-    an earlier call is used again where it was made by the same program, scene and machine."""
+    """The rows of PATH. New rows are appended to PATH.part at once; finish() makes them PATH. Rows of an earlier call
+    in either file are used again if the same program, scene and machine made them."""
 
     def __init__(self, path, keys, fields, again=False):
         self.path, self.part = path, path.with_name(path.name + ".part")
@@ -44,7 +44,7 @@ class Rows:
             for row in [*read_rows(path), *read_rows(self.part)]:
                 if row.keys() == set(self.fields):
                     self.rows[self.key_of(row)] = row
-        # Written afresh: a line that a signal cut off must not be gone on with.
+        # Written afresh, so that nothing is appended to a line that a signal cut off.
         self.write(self.part, self.rows.values() if self.part.is_file() and not again else [])
 
     def key_of(self, row):
@@ -69,7 +69,7 @@ class Rows:
             writer.writerows(rows)
 
     def finish(self, keys):
-        """The rows of these keys, in their order, are the file from now on."""
+        """Makes the rows of these keys, in their order, the file."""
         whole = self.path.with_name(self.path.name + ".new")
         self.write(whole, [self.rows[tuple(map(as_text, key))] for key in keys])
         os.replace(whole, self.path)
@@ -77,5 +77,5 @@ class Rows:
 
 
 def read_numbers(path, words):
-    """The rows for tables and charts; columns that are no words as numbers."""
+    """The rows for tables and charts; all columns but `words` and made_by as numbers."""
     return [{k: v if k in words or k == "made_by" else float(v) for k, v in row.items()} for row in read_rows(path)]

@@ -17,7 +17,7 @@ def median(group, field):
 
 
 def ratio(groups, over, under, side):
-    """Of runs of one round, which follow each other; the median over the rounds."""
+    """Ratio of two cases' hops per second in the same round, whose runs follow each other; median over rounds."""
     pairs = zip(groups[over, side], groups[under, side])
     return statistics.median(a["hops_per_second"] / b["hops_per_second"] for a, b in pairs)
 

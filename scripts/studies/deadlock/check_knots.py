@@ -1,11 +1,11 @@
-"""Checks the knots of a wait-for graph as a run dumps it (PREFIX.waits.json): a plain search that shares nothing with the
-simulator. Usage: check_knots FILE.waits.json ..."""
+"""Checks the knots of a wait-for graph that a run dumped (PREFIX.waits.json), by a plain search that shares nothing
+with the simulator. Usage: check_knots FILE.waits.json ..."""
 import json
 import sys
 
 
 def dead_nodes(nodes):
-    """The largest set of nodes none of which could go on even if everything outside of it did."""
+    """The largest set of nodes of which none could go on even if all nodes outside it did."""
     dead = set(range(len(nodes)))
     changed = True
     while changed:
@@ -32,8 +32,8 @@ def reachable(nodes, dead, start):
 
 
 def objection(graph):
-    """Why the graph's knots are none, or None: all of a knot is dead, and each of it waits for all of it and for nothing
-    dead outside."""
+    """Why the graph's knots are wrong, or None. All nodes of a knot must be dead, and each must wait for the whole knot
+    and for no other dead node."""
     nodes, knots = graph["nodes"], graph["knots"]
     dead = dead_nodes(nodes)
     if bool(dead) != bool(knots):

@@ -1,4 +1,4 @@
-"""Which runs the deadlock sweep makes: networks x buffer depth x M x recovery x seeds, and what stands about that."""
+"""Which runs the deadlock sweep makes: networks x buffer depth x M x recovery x seeds, and some beside these."""
 import dataclasses
 
 NETWORKS = ["shared", "split", "half", "quadrant"]
@@ -10,17 +10,17 @@ SEEDS = [1, 2, 3, 4, 5]
 SYNTHETIC = "synthetic"
 CELLS = 64
 OTHER_CELLS = {16: SEEDS, 32: SEEDS, 128: SEEDS[:2]}
-FULL_CELLS = 16  # of the runs that are waited for to their verdict, however long that takes
+FULL_CELLS = 16  # of the runs without a limit of cycles
 LIMIT = 200_000  # cycles, loading included: several times what the slowest run that ends takes
 SCENE_LIMIT = 250_000
-GENERATIONS = {SYNTHETIC: 3}  # that may have to wait: the bound of design section 5
+GENERATIONS = {SYNTHETIC: 3}  # generations that may have to wait: the bound of design section 5
 SCENE_GENERATIONS = 5  # max-depth 4, and the last waits for its shadow rays
 MODES = [("none", "reserved"), ("none", "free"), ("postpone", "reserved"), ("postpone", "free")]
 
 
 @dataclasses.dataclass(frozen=True)
 class Configuration:
-    """The factors. `load` is what the rays meet: synthetic traffic, or a scene by its name."""
+    """The factors of a run. `load`: what the rays meet, synthetic traffic or a scene by its name."""
 
     load: str
     cells: int = CELLS
@@ -42,7 +42,7 @@ class Configuration:
 
     @property
     def bound(self):
-        """M from which on `half` and `quadrant` with recovery and reserved slots are said always to end."""
+        """The smallest M with which `half` and `quadrant` with recovery and reserved slots are said always to end."""
         return GENERATIONS.get(self.load, SCENE_GENERATIONS)
 
     def label(self):
@@ -61,7 +61,7 @@ class Configuration:
 
 
 def seeds_of(load, recovery):
-    """A scene's run has nothing to draw without recovery; with it, the back-off's jitter."""
+    """The seeds of a load. A scene's run draws nothing but the jitter of recovery's back-off."""
     return SEEDS if load == SYNTHETIC or recovery == "postpone" else SEEDS[:1]
 
 
@@ -105,7 +105,7 @@ def blocks(scene, limit=SCENE_LIMIT):
 
 
 def quick_blocks(scene):
-    """A dozen tiny runs, every part of the report in them."""
+    """A dozen tiny runs that fill every part of the report."""
     synthetic = [limited(SYNTHETIC, 12, 30_000, networks=networks, ray_store=m, recovery=recovery)
                  for networks in ["shared", "half"] for m in [1, 8] for recovery in ["none", "postpone"]]
     scenes = [limited(scene, 12, 60_000, networks=networks, ray_store=8, recovery=recovery)

@@ -7,7 +7,7 @@ from studies.deadlock.design import NETWORKS
 from studies.deadlock.rows import smallest_safe
 from studies.deadlock.tables import NONE, POSTPONE
 
-# Told apart by the colour-blind.
+# Fit for the colour-blind.
 DEPTH_COLOURS = ["#d55e00", "#0072b2", "#009e73", "#7f7f7f"]
 NETWORK_COLOURS = dict(zip(NETWORKS, ["#d55e00", "#e69f00", "#0072b2", "#009e73"]))
 MARKERS = ["o", "s", "^", "D"]
@@ -22,7 +22,7 @@ def store_axis(axis, stores):
 
 
 def logarithmic(axis):
-    """Plain numbers at the ticks; those between the powers of ten only where there are few powers."""
+    """Makes the y axis logarithmic, with plain numbers; between powers of ten only if there are few powers."""
     axis.set_yscale("log")
     low, high = axis.get_ylim()
     axis.yaxis.set_major_formatter(FuncFormatter(thousands))
@@ -43,7 +43,7 @@ def plot(axis, stores, line, value, **how):
 
 
 def draw_locks(results, prefix):
-    """The main chart, as PNG and SVG: per load a row and per network a panel, the share of runs that did not end."""
+    """The main chart, as PNG and SVG: the share of runs that did not end, a row per load, a panel per network."""
     networks = [n for n in NETWORKS if any(n in results.networks(load) for load in results.loads)]
     depths = sorted({depth for load in results.loads for depth in results.depths(load)})
     figure, axes = panels(len(results.loads), len(networks), 3.3 * len(networks), 2.7 * len(results.loads) + 1.1,
@@ -54,7 +54,7 @@ def draw_locks(results, prefix):
         for axis, name in zip(line, networks):
             for place, depth in enumerate(depths):
                 for number, (mode, style) in enumerate(STYLES.items()):
-                    shift = 1.6 * (place - (len(depths) - 1) / 2) - 5 * number  # equal lines side by side
+                    shift = 1.6 * (place - (len(depths) - 1) / 2) - 5 * number  # keeps equal lines apart
                     plot(axis, stores, results.line(load, name, depth, mode),
                          lambda group: 100 * group.share(lambda row: not row.completed) + shift,
                          linestyle=style, color=DEPTH_COLOURS[place % len(DEPTH_COLOURS)], marker=MARKERS[place % 4],
@@ -111,7 +111,7 @@ def draw_occupancy(results, path):
 
 
 def draw_bits(results, path):
-    """Storage against cycles of every configuration whose runs all end: what an architect chooses from."""
+    """Storage against cycles of every configuration whose runs all end: the choices of an architect."""
     figure, axes = panels(1, len(results.loads), 6.2 * len(results.loads), 5.2)
     depths = sorted({depth for load in results.loads for depth in results.depths(load)})
     for axis, load in zip(axes[0], results.loads):

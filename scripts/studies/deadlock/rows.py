@@ -10,7 +10,7 @@ CLASSES = ["all", "ray", "ray_east", "ray_west", "ray_east_south", "ray_west_sou
 
 
 def row_of(configuration, record):
-    """One line of the CSV; classes that the networks don't have are empty, and so is the knot where none is known."""
+    """One line of the CSV. Classes that the networks don't have are empty, as is the knot if none is known."""
     report = record["report"]
     storage, messages, knot = report["storage_bits"], report["messages"], report["deadlock"].get("knot", {})
     buffers = report["buffers"]
@@ -31,7 +31,7 @@ def row_of(configuration, record):
 
 
 def write(path, runs, records):
-    """Rows in the order of the design."""
+    """Writes rows in the order of the design."""
     lines = [row_of(c, records[c]) for c in runs if c in records]
     write_csv(path, lines)
 
@@ -46,7 +46,7 @@ class Row(SweepRow):
 
     @property
     def locked(self):
-        """A deadlock for certain: the verdict, or a knot in a run that was cut off."""
+        """Whether a deadlock is certain: by the verdict, or by a knot in a run that was cut off."""
         return self.verdict == "deadlock" or self.knot_cells is not None
 
     @property
@@ -62,7 +62,7 @@ class Row(SweepRow):
 
 
 class Group:
-    """The runs that differ in nothing but their seed."""
+    """Runs that differ only in their seed."""
 
     def __init__(self, rows):
         self.rows = rows
@@ -125,7 +125,7 @@ class Results:
 
 
 def smallest_safe(line):
-    """(M, group) from which on every run of every larger M completes; None where there is none."""
+    """The smallest (M, group) whose runs all complete, as do those of every larger M; None if there is none."""
     safe = None
     for m, group in reversed(line):
         if not group.safe:

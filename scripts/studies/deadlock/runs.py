@@ -10,7 +10,7 @@ KEPT = ["verdict", "cycles", "pixels", "rays", "messages", "ray_store", "buffers
 
 
 def brief(report):
-    """What of a run's JSON the sweep keeps: not the lines of what was stuck where, which may be thousands."""
+    """The part of a run's JSON that the sweep keeps: not the lines on what was stuck, which may be thousands."""
     kept = {key: report[key] for key in KEPT if key in report}
     deadlock = report["deadlock"]
     kept["deadlock"] = {"postponed": deadlock["postponed"]}
@@ -38,7 +38,7 @@ class Sweep(ReportRunner):
         return brief(report)
 
     def examine(self, report, folder):
-        """A deadlock is believed when a search over the dumped graph finds the same knots."""
+        """Checks that a search over the dumped graph finds the knots of a deadlock. Raises Failure if not."""
         if "knot" not in report["deadlock"]:
             if report["verdict"] == "deadlock":
                 raise Failure("a deadlock without a knot")

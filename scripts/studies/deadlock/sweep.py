@@ -1,4 +1,4 @@
-"""The sweep behind scripts/study deadlock: which runs, making them, and what is written from them."""
+"""The sweep of scripts/study deadlock: its runs, how they are made, and what is written from them."""
 import pathlib
 
 from studies.deadlock import design
@@ -61,7 +61,7 @@ class DeadlockSweep(Command):
                 if record["report"].get("equals_untimed") is False]
 
     def draw(self, results):
-        from studies.deadlock.pictures import draw_bits, draw_locks, draw_occupancy  # matplotlib: only where it is needed
+        from studies.deadlock.pictures import draw_bits, draw_locks, draw_occupancy  # matplotlib is needed only here
         charts = self.places.charts
         draw_locks(results, charts / "deadlock")
         draw_occupancy(results, charts / "deadlock_occupancy.png")

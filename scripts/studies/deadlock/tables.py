@@ -1,4 +1,4 @@
-"""docs/measured/deadlock.md: every table of it from the rows of deadlock.csv."""
+"""Writes docs/measured/deadlock.md: all its tables are made from the rows of deadlock.csv."""
 from studies.deadlock.design import MODES, SAFE_NETWORKS
 from studies.deadlock.rows import smallest_safe
 from studies.tables import NOTHING, count, table
@@ -11,14 +11,14 @@ def name_of(mode):
 
 
 def runs_of(results, load, keep):
-    """The load's runs at its main size and limit that `keep` takes, by their configuration."""
+    """The load's runs at its main size and limit whose configuration `keep` accepts."""
     cells, limit = results.main[load]
     return [row for row in results.rows if row.configuration.load == load and row.configuration.cells == cells
             and row.configuration.max_cycles == limit and keep(row.configuration)]
 
 
 def counted(rows, quality):
-    """'all 45', or '43 of 45' and which are not."""
+    """How many rows have the quality: 'all 45', or '43 of 45' and which have not."""
     against = [row for row in rows if not quality(row)]
     if not against:
         return f"all {len(rows)}"
@@ -39,7 +39,7 @@ def verdict_on(rows, quality):
 
 
 def locks_only_below(results, load, networks):
-    """Whether the runs without recovery that lock are those of the smallest M."""
+    """Text for each buffer depth: up to which M runs without recovery lock, and from which M on all end."""
     bounds = []
     for depth in results.depths(load):
         line = results.line(load, networks, depth, NONE)
@@ -53,7 +53,7 @@ def locks_only_below(results, load, networks):
 
 
 def expectations(results):
-    """The design's expectations, each with what the rows say to it."""
+    """The design's expectations, each with the evidence of the rows."""
     lines = []
     for load in results.loads:
         for networks in ["shared", "split"]:
@@ -98,7 +98,7 @@ def safe_table(results):
 
 
 def cost_of(line):
-    """Of the smallest safe machine on the line: M, bits, median cycles."""
+    """M, bits, median cycles and median destroyed rays of the smallest safe machine on the line; None without one."""
     safe = smallest_safe(line)
     if not safe:
         return None
@@ -123,7 +123,7 @@ def cost_table(results):
 
 
 def slots_table(results):
-    """Free beside reserved slots: verdicts, and the cycles as a multiple of those at the largest M."""
+    """Free and reserved slots compared: verdicts, and cycles as a multiple of those at the largest M."""
     lines = []
     stores = sorted({c.ray_store for c in results.groups if c.slots == "free"})
     for load in results.loads:

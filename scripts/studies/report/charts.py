@@ -8,7 +8,7 @@ from studies.report.maps import number
 WIDTH, HEIGHT = 300, 150
 LEFT, RIGHT, TOP, BOTTOM = 40, 8, 8, 30
 
-CHARTS = [  # key, title, per cycle: divided by the bucket's cycles
+CHARTS = [  # key, title; True: per cycle, "kilo": per 1000 cycles, None: running sum, % of the pixels
     ("rays_in_flight", "rays on their way", False),
     ("slots_used", "ray store slots in use", False),
     ("answers_in_flight", "answers on their way", False),
@@ -19,7 +19,7 @@ CHARTS = [  # key, title, per cycle: divided by the bucket's cycles
 
 
 def nice(limit, steps=(1, 2, 5, 10)):
-    """The next of these steps times a power of ten."""
+    """The smallest of these steps times a power of ten that is at least `limit`."""
     if limit <= 0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(limit))
@@ -33,7 +33,7 @@ def ticks(low, high, count):
 
 
 def chart(title, start, end, widths, values, marks):
-    """A line of steps: one value per bucket; `marks`: (cycle, text) of vertical lines."""
+    """A line chart in steps, one value per bucket. `marks`: (cycle, text) of vertical lines."""
     top = nice(max(values), (1, 1.5, 2, 3, 4, 5, 6, 8, 10))
     def x(cycle):
         return LEFT + (cycle - start) / max(end - start, 1) * (WIDTH - LEFT - RIGHT)
@@ -112,7 +112,7 @@ def activity(report, pixels):
 
 
 def knot_of(deadlock):
-    """Cells and edges between cells of the knot, whatever of it the report holds: (cells, edges, what they are)."""
+    """The knot as far as the report has it: (cells, edges between cells, what they are)."""
     knot = deadlock.get("knot")
     if isinstance(knot, dict):
         nodes = [n for n in knot.get("nodes", []) if isinstance(n, dict) and "x" in n and "y" in n]
@@ -139,7 +139,7 @@ def arrow(start, end):
     (x0, y0), (x1, y1) = start, end
     length = math.hypot(x1 - x0, y1 - y0)
     dx, dy = (x1 - x0) / length, (y1 - y0) / length
-    # From centre to centre, a little to the right of its way: an edge and its reverse stay apart.
+    # From centre to centre, a little to the right, so that an edge and its reverse stay apart.
     ax, ay = x0 + 0.5 - 0.15 * dy, y0 + 0.5 + 0.15 * dx
     bx, by = x1 + 0.5 - 0.15 * dy - 0.2 * dx, y1 + 0.5 + 0.15 * dx - 0.2 * dy
     left = bx - 0.2 * dx - 0.14 * dy, by - 0.2 * dy + 0.14 * dx
@@ -149,7 +149,7 @@ def arrow(start, end):
 
 
 def view(cells, edges, frame, size, rem):
-    """The part `frame` (x0, y0, x1, y1, the last one excluded) of the array of `size`."""
+    """SVG of the part `frame` (x0, y0, x1, y1; x1 and y1 excluded) of an array of `size`."""
     width, height = size
     x0, y0, x1, y1 = frame
     parts = [f'<rect class="field" x="0" y="0" width="{width}" height="{height}"/>']
@@ -159,14 +159,14 @@ def view(cells, edges, frame, size, rem):
         parts.append(f'<path class="cells" d="{"".join(lines)}"/>')
     parts += [f'<rect class="stuck" x="{x}" y="{y}" width="1" height="1"/>' for x, y in cells]
     parts += [f'<path class="edge" d="{arrow(*edge)}"/>' for edge in edges]
-    ratio = min(max((x1 - x0) / (y1 - y0), 0.2), 8)  # a row or a column is stretched
+    ratio = min(max((x1 - x0) / (y1 - y0), 0.2), 8)  # a single row or column is stretched
     return (f'<svg viewBox="{x0} {y0} {x1 - x0} {y1 - y0}" preserveAspectRatio="none" style="aspect-ratio:{ratio:.3f};'
             f'width:min(100%,{rem * ratio:.2f}rem)" role="img" aria-label="cells {x0} to {x1 - 1}, {y0} to {y1 - 1}">'
             f'{"".join(parts)}</svg>')
 
 
 def around(cells, size):
-    """A square that holds the cells and something of their neighbourhood, inside the array where it fits."""
+    """A square around the cells with a margin, inside the array where it fits."""
     lows = [min(c[i] for c in cells) for i in (0, 1)]
     highs = [max(c[i] for c in cells) + 1 for i in (0, 1)]
     side = max(h - l for l, h in zip(lows, highs)) + 4
@@ -175,7 +175,7 @@ def around(cells, size):
 
 
 def array_picture(deadlock, width, height):
-    """The array with the cells that are stuck and what waits for what among them; a small knot once more, larger."""
+    """The array with the stuck cells and the waits between them; a small knot is drawn again, enlarged."""
     cells, edges, what = knot_of(deadlock)
     if not cells:
         return ""

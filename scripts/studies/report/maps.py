@@ -6,7 +6,7 @@ import html
 import struct
 import zlib
 
-# Column, title, what a cell's value is; False: a scale of square roots, for values with a long tail.
+# Column, title, whether the scale is linear; else it is of square roots, for values with a long tail.
 GROUPS = [
     ("Waiting", "Cycles for which something in the cell could have gone on but for one cause, summed over all that "
      "waited: two rays that wait for 10 cycles each make 20. The scale is one of square roots.", [
@@ -52,7 +52,7 @@ def palette():
 
 
 def read_cells(path, width, height):
-    """The columns of a cells.csv by name, in row-major order. Raises ValueError for what is none."""
+    """The columns of a cells.csv by name, in row-major order. Raises ValueError for any other file."""
     with open(path, newline="") as stream:
         lines = csv.reader(stream)
         names = next(lines, [])
@@ -77,7 +77,7 @@ def data_uri(png):
 
 
 def indexed_png(width, height, shades):
-    """A PNG of bytes, each a place in the palette."""
+    """A PNG of bytes, each an index into the palette."""
     def chunk(kind, body):
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
     rows = b"".join(b"\0" + shades[y * width:(y + 1) * width] for y in range(height))

@@ -1,4 +1,4 @@
-"""Makes a page of a run's results: HTML that needs nothing from outside."""
+"""Makes a page of a run's results: HTML without external files."""
 import argparse
 import html
 import json
@@ -164,7 +164,7 @@ def key_figures(report):
 
 
 def stalls(cells):
-    """A table of all cells' waiting by cause."""
+    """A table of the waiting of all cells, by cause."""
     sums = {c: sum(cells[c]) for c, _ in CAUSES if c in cells}
     total = sum(sums.values())
     if not sums:
@@ -207,7 +207,7 @@ def configuration(config):
 
 
 def beside(path, suffix):
-    """The run's file of this sort, or None."""
+    """The run's file with this suffix, or None."""
     stem = path[:-5] if path.endswith(".json") else path
     file = pathlib.Path(stem + suffix)
     return file if file.is_file() else None
@@ -256,7 +256,7 @@ def page(path):
 
 
 def write(path, content):
-    """Whole or not at all."""
+    """Writes the file whole or not at all. Raises Failure."""
     partial = f"{path}.part{os.getpid()}"
     try:
         with open(partial, "w", encoding="utf-8", errors="replace") as stream:

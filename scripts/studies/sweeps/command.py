@@ -1,4 +1,4 @@
-"""What the sweeps' scripts share: their options, where results lie, and how one is run, fails and is stopped."""
+"""What the sweeps' scripts share: options, places of results, how a sweep is run, fails and is stopped."""
 import argparse
 import os
 import pathlib
@@ -16,7 +16,7 @@ def positive(word):
 
 
 class Places:
-    """Where things lie: in the project, or all in one folder."""
+    """Where results lie: in the project, or all in one folder."""
 
     def __init__(self, root, out, name):
         self.cache = (out or programs.measured(root)) / "cache"
@@ -25,7 +25,7 @@ class Places:
         self.write_to(out or programs.measured(root), out or programs.measured(root))
 
     def write_to(self, tables, charts):
-        """Tables and charts go into these folders."""
+        """Makes these the folders of tables and charts."""
         self.tables, self.charts = tables, charts
         for folder in (tables, charts):
             folder.mkdir(parents=True, exist_ok=True)
@@ -34,7 +34,7 @@ class Places:
 
 
 class Command:
-    """A sweep as its users call it. Each sweep says in a subclass what its runs are and what is made of them."""
+    """A sweep as its users call it. A subclass for each sweep defines its runs and what is made of them."""
 
     name = ""  # what its results are called
     description = ""
@@ -44,8 +44,8 @@ class Command:
     document = None  # the function that makes the tables of (rows, the user's words, seconds or None)
 
     def __init__(self, words, called=None):
-        """The first word is the project's folder, the others are the user's. `called`: what they called, if it
-        is not the sweep alone."""
+        """`words`: the project's folder, then the user's words. `called`: the command that they called, if it is not
+        the sweep's own."""
         self.called = called or f"scripts/study {self.name}"
         self.short = self.called.removeprefix("scripts/")
         parser = self.parser()
@@ -68,7 +68,7 @@ class Command:
         self.add_options(add)
         return parser
 
-    # What each sweep says.
+    # Defined by each sweep.
 
     def add_options(self, add):
         """The sweep's own options."""
@@ -87,14 +87,14 @@ class Command:
         print(f"# {len(runs)} distinct runs, {len(done)} finished")
 
     def wrong(self, _records):
-        """What is said about each run that ended, but not as it should."""
+        """A text for each run that ended, but not as it should."""
         return []
 
     def draw(self, results):
-        """The charts."""
+        """Draws the charts."""
         raise NotImplementedError
 
-    # What they share.
+    # Shared by all sweeps.
 
     def say(self, text):
         print(f"{self.short}: {text}", file=sys.stderr)
@@ -103,7 +103,7 @@ class Command:
         sys.exit(f"{self.short}: {text}")
 
     def chosen(self, runs):
-        """Those that --only names."""
+        """The runs that --only names."""
         only = self.options.only
         found = [run for run in runs if not only or only in run.label()]
         if not found:
@@ -115,7 +115,7 @@ class Command:
             self.fail(f"{path} is not a program; expected {expected}")
 
     def make(self, runner, runs):
-        """The records of the runs, made where they are not in the cache; None where one failed."""
+        """Makes the runs that are not in the cache. Returns the records of all, or None if a run failed."""
         records, failures = runner.make_all(runs, self.options.jobs)
         for run, reason in failures.items():
             self.say(f"{run.label()} failed: {reason}")
@@ -125,14 +125,14 @@ class Command:
         return records
 
     def keeps_only(self, chosen):
-        """Whether these are a part of the sweep, for its cache alone."""
+        """Whether the chosen runs are only a part of the sweep, kept in its cache without tables."""
         if not self.options.only or self.options.out:
             return False
         print(f"{len(chosen)} runs are finished and kept for the whole sweep; tables are made of that", file=sys.stderr)
         return True
 
     def say_wrong(self, records):
-        """The exit code."""
+        """Reports the runs that did not end as they should; returns the exit code."""
         wrong = self.wrong(records)
         for text in wrong:
             self.say(text)
@@ -142,12 +142,12 @@ class Command:
         self.rows.write(self.places.csv, self.every(), records)
 
     def write_tables(self, seconds=None):
-        """Of the CSV; `seconds`: what its runs took, if that is known."""
+        """Writes the tables from the CSV. `seconds`: what its runs took, if known."""
         results = self.rows.Results(self.places.csv)
         self.places.document.write_text(type(self).document(results, self.words, seconds))
 
     def draw_charts(self):
-        """Of the CSV."""
+        """Draws the charts from the CSV."""
         self.draw(self.rows.Results(self.places.csv))
 
     def write_results(self, seconds=None):
@@ -157,7 +157,7 @@ class Command:
         print(f"{self.places.document}, {self.places.csv}, {charts}", file=sys.stderr)
 
     def sweep(self):
-        """Makes the runs and what is written of them; the exit code."""
+        """Makes the runs and writes their results; returns the exit code."""
         every = self.every()
         runs, runner = self.chosen(every), self.runner()
         if self.options.list:
@@ -172,7 +172,7 @@ class Command:
         return self.say_wrong(records)
 
     def main(self):
-        """The exit code."""
+        """Does what the options ask for; returns the exit code."""
         if self.options.from_csv:
             if not self.places.csv.is_file():
                 self.fail(f"{self.places.csv} is missing; a sweep writes it")

@@ -1,4 +1,4 @@
-"""What the sweeps' rows share: the CSV, and its lines read back."""
+"""What the sweeps' rows share: writing the CSV and reading its lines back."""
 import csv
 import dataclasses
 
@@ -16,10 +16,10 @@ def read_csv(path, row):
 
 
 class SweepRow:
-    """A line read back: .configuration, and the measured columns as numbers, None where empty."""
+    """A line of the CSV: .configuration, and the measured columns as numbers, None where empty."""
 
     Configuration = None  # the sweep's factors
-    TEXTS = []  # measured columns that are no numbers
+    TEXTS = []  # measured columns that are not numbers
 
     def __init__(self, line):
         fields = dataclasses.fields(self.Configuration)

@@ -1,4 +1,4 @@
-"""What sweeps share: runs on all cores, each finished one kept, so that a stopped sweep goes on where it was."""
+"""What sweeps share: runs on all cores. Finished runs are kept, so that a stopped sweep can go on."""
 import concurrent.futures
 import dataclasses
 import fcntl
@@ -24,7 +24,7 @@ class Stopped(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Shared:
-    """What several runs need: files in the cache's folder of work, a prefix and these suffixes."""
+    """Files that several runs need, in the cache's work folder: a prefix and these suffixes."""
 
     prefix: str
     suffixes: tuple
@@ -39,7 +39,7 @@ def is_number(value):
 
 
 class Cache:
-    """Finished runs, a file each, written beside and renamed. `owner` is the sweep's name, for messages."""
+    """Finished runs, a file each, written under another name and renamed. `owner`: the sweep's name, for messages."""
 
     def __init__(self, folder, owner):
         self.folder = folder
@@ -48,7 +48,7 @@ class Cache:
         self.lock = None
 
     def occupy(self):
-        """Lets one sweep at a time work here, and clears away what killed runs left."""
+        """Locks the cache for one sweep and removes what killed runs left. Exits if another sweep holds it."""
         self.folder.mkdir(parents=True, exist_ok=True)
         self.lock = open(self.folder / "lock", "w")
         try:
@@ -59,7 +59,7 @@ class Cache:
         self.work.mkdir()
 
     def read(self, name):
-        """The record of this name, or None where there is none that can be read."""
+        """The record of this name, or None if it can't be read."""
         try:
             return json.loads((self.folder / f"{name}.json").read_text())
         except (OSError, ValueError):
@@ -72,7 +72,7 @@ class Cache:
 
 
 class Runner:
-    """Makes runs in parallel; a sweep says what one run is (`make_one`) and whether it is finished (`load`)."""
+    """Makes runs in parallel. A sweep defines how one run is made (`make_one`) and whether it is finished (`load`)."""
 
     def __init__(self, cache):
         self.cache = cache
@@ -81,11 +81,11 @@ class Runner:
         self.children = set()
 
     def name_of(self, run):
-        """What the run's record is called."""
+        """The name of the run's record."""
         return run.label()
 
     def cost(self, run):
-        """Rough processor seconds."""
+        """Rough processor seconds of a run."""
         raise NotImplementedError
 
     def load(self, run):
@@ -102,7 +102,7 @@ class Runner:
         raise NotImplementedError
 
     def make_apart(self, run):
-        """The same in a process of its own; what it shares with others lies there and stays."""
+        """The same in a process of its own. Files shared with other runs exist already and are kept."""
         return self.make_one(run)
 
     def shared(self, _run):
@@ -117,7 +117,7 @@ class Runner:
         """Called with the runs to be made before the first of them."""
 
     def make_all(self, runs, jobs):
-        """Makes the runs that are not in the cache, those of the greatest cost first; returns all records and
+        """Makes the runs that are not in the cache, the most costly first. Returns all records and
         {run: what went wrong}."""
         self.cache.occupy()
         records, failures = self.finished(runs), {}
@@ -153,8 +153,8 @@ class Runner:
                 child.kill()
 
     def execute(self, command, codes=(0,)):
-        """Runs a program to its end and returns its output; another exit code than those is a failure."""
-        if shutil.which("setpriv"):  # a killed sweep takes its runs along
+        """Runs a program to its end and returns its output. Raises Failure for an exit code that is not in `codes`."""
+        if shutil.which("setpriv"):  # ends the program if the sweep is killed
             command = ["setpriv", "--pdeathsig", "KILL", *command]
         with self.guard:
             if self.stopping.is_set():
@@ -179,14 +179,14 @@ class Runner:
 
 
 class ReportRunner(Runner):
-    """Each run is one program that writes a JSON, of which a brief report is kept."""
+    """A runner whose runs are one program each, which writes a JSON; a brief report of it is kept."""
 
     def command(self, run):
-        """Program and arguments; the prefix of its files, the run's own options and --quiet come after them."""
+        """Program and arguments. The prefix of its files, --quiet and the run's own options are appended."""
         raise NotImplementedError
 
     def brief(self, report):
-        """What is kept of the JSON."""
+        """The part of the JSON that is kept."""
         raise NotImplementedError
 
     def is_whole(self, run, record):
@@ -194,15 +194,15 @@ class ReportRunner(Runner):
         raise NotImplementedError
 
     def examine(self, _report, _folder):
-        """What else is found out about a run while its files, FOLDER/run.*, are there; goes into the brief report."""
+        """Additions to the brief report, from the run's files FOLDER/run.*, which exist only now."""
         return {}
 
     def more(self, _run):
-        """What else belongs into the record."""
+        """Additions to the record."""
         return {}
 
     def load(self, run):
-        """The finished run, or None; whatever is not the whole result of just this run counts as none."""
+        """The finished run's record, or None if there is no whole record of this very run."""
         record = self.cache.read(self.name_of(run))
         try:
             whole = (record["configuration"] == dataclasses.asdict(run) and is_number(record["seconds"])
@@ -214,9 +214,9 @@ class ReportRunner(Runner):
     def make_one(self, run):
         start = time.monotonic()
         folder = self.cache.work / self.name_of(run)
-        shutil.rmtree(folder, ignore_errors=True)  # of an attempt that was killed
+        shutil.rmtree(folder, ignore_errors=True)  # left by an attempt that was killed
         folder.mkdir()
-        # Codes 3 and 4 are verdicts of a run, and the report says which.
+        # Exit codes 3 and 4 are verdicts, which the report tells.
         self.execute([*self.command(run), "-o", str(folder / "run"), "--quiet", *run.options()], codes=(0, 3, 4))
         whole = json.loads((folder / "run.json").read_text())
         report = {**self.brief(whole), **self.examine(whole, folder)}
@@ -228,7 +228,7 @@ class ReportRunner(Runner):
 
 
 class Progress:
-    """Done, all and time left on standard error: rewritten in place on a terminal, now and then elsewhere."""
+    """Prints runs done, all runs and time left on standard error: in place on a terminal, now and then elsewhere."""
 
     def __init__(self, runs, done, pending_cost):
         self.all, self.done, self.left = runs, done, pending_cost

@@ -1,4 +1,4 @@
-"""Plans a sweep, has Snakemake make it, and says what became of it."""
+"""Plans a sweep, runs it with Snakemake, and reports the outcome."""
 import hashlib
 import json
 import math
@@ -10,15 +10,15 @@ import sys
 
 from studies.sweeps.kinds import SWEEPS
 
-GROUP_SECONDS = 300  # of processor time in a job of a cluster
+GROUP_SECONDS = 300  # processor time of one cluster job
 PROGRESS_SECONDS = 10
-NAMED = 20  # so many missing runs are named
-SHARED_CODE = ["charts.py", "sweeps/rows.py", "tables.py"]  # of all sweeps' tables and charts
+NAMED = 20  # missing runs that are named at most
+SHARED_CODE = ["charts.py", "sweeps/rows.py", "tables.py"]  # code of all sweeps' tables and charts
 SNAKEMAKE = "/usr/bin/snakemake"
 
 
 def with_whole_profile(options):
-    """Snakemake works in another folder, where the path of a profile must hold, too."""
+    """Makes the path of a profile absolute, since Snakemake works in another folder."""
     whole = []
     for before, word in zip(["", *options], options):
         mark, path = "--profile=", word.removeprefix("--profile=")
@@ -30,14 +30,14 @@ def with_whole_profile(options):
 
 class SnakemakeSweep:
     def __init__(self, command, words, options):
-        """`words`: the user's words for the sweep, after the project's folder; `options`: those for Snakemake."""
+        """`words`: the project's folder, then the user's words for the sweep. `options`: those for Snakemake."""
         self.command, self.options = command, with_whole_profile(options)
         self.every = command.every()
         self.runner = command.runner()
         self.chosen = command.chosen(self.every)
         self.cache = self.runner.cache.folder.resolve()
         self.names = {run: self.runner.name_of(run) for run in self.every}
-        # Another design of the same programs has tables of its own.
+        # Another design of the same programs needs tables of its own.
         design = hashlib.sha256("\n".join([command.words, *self.names.values()]).encode()).hexdigest()[:12]
         self.state = self.cache / f"sweep-{design}"
         self.products = self.state / "products"
@@ -62,7 +62,7 @@ class SnakemakeSweep:
                 "code": [str(path) for path in code]}
 
     def prepare(self):
-        """Writes the plan. A file that is not the whole result of its run would pass for one by its name: it goes."""
+        """Writes the plan. Deletes files that are not the whole result of their run: Snakemake goes by their names."""
         self.products.mkdir(parents=True, exist_ok=True)
         for run in self.every:
             if self.runner.load(run) is None:
@@ -70,28 +70,28 @@ class SnakemakeSweep:
         self.plan_file.write_text(json.dumps(self.plan(), indent=1))
 
     def group_components(self):
-        """So many runs, or groups of runs that share something, are a job of a cluster."""
+        """Number of runs, or of groups of runs that share something, in one cluster job."""
         apart = {self.runner.shared(run) or run for run in self.chosen}
         seconds = sum(self.runner.cost(run) for run in self.chosen) / len(apart)
         return max(1, math.floor(GROUP_SECONDS / seconds))
 
     def words_for_snakemake(self, target):
-        """Our own lock is held, so Snakemake needs none. Every file is renamed into its place when it is whole, so one
-        that is there is finished, whoever made it, also when the job that it was made in came to grief."""
+        """Snakemake's command. It needs no lock, since we hold our own. Files are renamed into place when they are
+        whole, so every file that exists is finished, even if the job that made it failed."""
         words = [SNAKEMAKE, target, "--snakefile", str(self.command.root / "scripts" / "studies" / "sweeps" / "Snakefile"),
                  "--configfile", str(self.plan_file), "--directory", str(self.state), "--nolock", "--keep-going",
                  "--keep-incomplete", "--ignore-incomplete", "--rerun-triggers", "mtime", "--scheduler", "greedy",
                  "--quiet", "rules", "--group-components", f"runs={self.group_components()}"]
-        if not any(word.startswith("--profile") for word in self.options):  # it says how many
+        if not any(word.startswith("--profile") for word in self.options):  # a profile has its own number
             words += ["--cores", str(self.command.options.jobs)]
         return words + self.options
 
     def run_snakemake(self, target):
-        """Its exit code. A signal to stop reaches Snakemake and its runs as the one that ends them at once."""
+        """Runs Snakemake; returns its exit code. A signal to stop is passed on as the one that ends all at once."""
         words = self.words_for_snakemake(target)
-        if shutil.which("setpriv"):  # killed, we take Snakemake along
+        if shutil.which("setpriv"):  # ends Snakemake if we are killed
             words = ["setpriv", "--pdeathsig", "INT", *words]
-        # A shell's background jobs ignore this signal, and their children would, too.
+        # Background jobs of a shell ignore this signal, and their children would, too.
         child = subprocess.Popen(words, start_new_session=True,
                                  preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
 
@@ -104,7 +104,7 @@ class SnakemakeSweep:
         return self.wait(child)
 
     def wait(self, child):
-        """Snakemake tells of progress only together with a dozen lines for each run."""
+        """Waits for Snakemake and prints the progress, which Snakemake prints only with a dozen lines for each run."""
         shown = 0
         while True:
             try:
@@ -116,7 +116,7 @@ class SnakemakeSweep:
                     shown = done
 
     def publish(self):
-        """Tables and charts go where the sweep's own script writes them."""
+        """Copies tables and charts to where the sweep's own script writes them."""
         places = self.command.places
         for path in self.products.iterdir():
             shutil.copy(path, (places.charts if path.name in self.command.charts else places.tables) / path.name)
@@ -139,7 +139,7 @@ class SnakemakeSweep:
                          "no tables; the same command goes on")
 
     def sweep(self):
-        """The exit code."""
+        """Makes the sweep; returns the exit code."""
         if self.command.options.list:
             return self.command.sweep()
         self.runner.cache.occupy()
@@ -147,7 +147,7 @@ class SnakemakeSweep:
         target = "records" if self.command.options.only else "results"
         if {"-n", "--dry-run", "--dryrun"} & set(self.options):
             return self.run_snakemake(target)
-        # Were the tables made in the same call, Snakemake would name every run of the sweep where one is missing.
+        # The runs come first: in one call with the tables, Snakemake would name every run where one is missing.
         code = self.run_snakemake("records")
         records = self.runner.finished(self.chosen)
         missing = [run for run in self.chosen if run not in records]

@@ -1,8 +1,8 @@
 """One step of a sweep, called by a rule of the Snakefile: PLAN run|shared|rows|tables|charts
-[NAME]. PLAN is the file that scripts/study sweep writes; NAME is what it calls the run, or what runs share.
+[NAME]. PLAN is the file that scripts/study sweep writes; NAME is its name for the run, or for what runs share.
 
-A run that fails leaves a record that says so, which is no result to anyone who reads it, and the step ends well: to
-Snakemake a failed run would be the failure of all that are made in the same job of a cluster."""
+If a run fails, the step still ends well and leaves a record of the failure, which no reader takes for a result. To
+Snakemake a failed step would mean the failure of all runs in the same cluster job."""
 import json
 import os
 import pathlib
@@ -61,14 +61,14 @@ class Step:
                 (self.cache.work / f"{name}{suffix}").touch()
 
     def records(self):
-        """Of the whole design."""
+        """The records of the whole design. Ends the step if some are missing."""
         records = self.runner.finished(self.every)
         if len(records) < len(self.every):
             sys.exit(f"no tables: {len(self.every) - len(records)} of {len(self.every)} runs are missing")
         return records
 
     def produce(self, write):
-        """Files that `write` makes appear whole or not at all."""
+        """Calls `write` so that the files that it makes appear whole or not at all."""
         places = self.command.places
         with tempfile.TemporaryDirectory(dir=self.products.parent) as folder:
             places.write_to(pathlib.Path(folder), pathlib.Path(folder))

@@ -4,7 +4,7 @@ import dataclasses
 CELLS = 32
 SEEDS = 20
 LIMIT = 1_000_000  # cycles: many times what the slowest run takes to end or to lock
-TIME_OUTS = [2 ** log for log in range(4, 21)]  # all are measured in every run
+TIME_OUTS = [2 ** log for log in range(4, 21)]  # every run measures all of them
 
 # Traffic by name: hit probability, reflected and refracted share, share of the children that turn back, sources.
 LOADS = {
@@ -18,7 +18,7 @@ LOAD_WORDS = {
     "light": "few hits, long flights", "default": "`deadlock_tb`'s own", "dense": "a hit in 3 of 10 cells",
     "branching": "two children of every other hit, all turn back", "shadows": "a shadow ray of each hit",
 }
-# Networks, M, recovery. The first two end, the third may, the others lock.
+# Networks, M, recovery. The first two end, the third may end, the others lock.
 MACHINES = [("half", 16, "none"), ("half", 4, "postpone"), ("half", 4, "none"), ("half", 2, "none"),
             ("split", 8, "none"), ("shared", 8, "none")]
 
@@ -65,5 +65,5 @@ def quick_runs():
 
 
 def cost(configuration):
-    """Rough processor seconds."""
+    """Rough processor seconds of a run."""
     return 0.05 + 0.1 * (configuration.cells / CELLS) ** 2

@@ -5,13 +5,13 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from studies.time_outs.design import MACHINES, TIME_OUTS, name_of
 from studies.charts import finish, panels
 
-# Told apart by the colour-blind; those that end are blue and green.
+# Fit for the colour-blind; the machines that end are blue and green.
 COLOURS = dict(zip(MACHINES, ["#0072b2", "#009e73", "#56b4e9", "#d55e00", "#e69f00", "#cc79a7"]))
 MARKERS = dict(zip(MACHINES, ["o", "s", "^", "D", "v", "P"]))
 ROWS = ["runs with a false alarm, %", "alarms per million\ncell cycles", "cells of knots that\nnever give alarm, %",
         "first lasting alarm,\ncycles after the knot"]
-SHOWN = [cycles for cycles in TIME_OUTS if cycles <= 2 ** 14]  # a longer one is longer than the runs
-FLOOR = 0.003  # of the logarithmic rates: less than one alarm in all of a load's and machine's runs
+SHOWN = [cycles for cycles in TIME_OUTS if cycles <= 2 ** 14]  # longer time-outs exceed the runs
+FLOOR = 0.003  # least rate drawn, on a logarithmic axis: below one alarm in all runs of a load and machine
 
 
 def power(value, _=None):
@@ -48,7 +48,7 @@ def draw_delays(axis, machine, group):
 
 
 def draw_misses(axis, groups):
-    """A bar for each machine that locks: it has no T in it."""
+    """A bar for each machine that locks; the values don't depend on T."""
     locking = [(machine, group) for machine, group in groups if group.locked]
     for place, (machine, group) in enumerate(locking):
         share = 100 * group.missed_cells()

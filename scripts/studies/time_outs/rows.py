@@ -9,8 +9,8 @@ LOCKED = ["knots", "missed_knots", "knot_cells", "alarming_cells", "first_wait",
 
 
 def row_of(configuration, record):
-    """One line of the CSV. `first_wait`: cycles from the knot's forming to the wait that gives the first lasting alarm
-    T later; `stood_still`: to the run's end."""
+    """One line of the CSV. `first_wait`: cycles from the forming of the knot to the wait that gives the first lasting
+    alarm, T later. `stood_still`: cycles from the forming to the run's end."""
     report = record["report"]
     return {
         **dataclasses.asdict(configuration), "verdict": report["verdict"], "trace_cycles": report["trace_cycles"],
@@ -45,16 +45,16 @@ class Group:
         self.alarming = [row for row in self.locked if row.first_wait is not None]
 
     def share_with(self, kind, cycles):
-        """Of the runs, with any such alarm."""
+        """Share of the runs that have such an alarm."""
         return sum(row.alarms(kind, cycles) > 0 for row in self.rows) / len(self.rows)
 
     def rate(self, kind, cycles):
-        """Alarms per million cycles of a cell, tracing."""
+        """Alarms per million cell cycles of tracing."""
         cell_cycles = sum(row.trace_cycles * row.configuration.cells ** 2 for row in self.rows)
         return 1e6 * sum(row.alarms(kind, cycles) for row in self.rows) / cell_cycles
 
     def silent_from(self, *kinds):
-        """The smallest T without such an alarm in any run; None where none is long enough."""
+        """The smallest T without such an alarm in any run; None if there is none."""
         return next((cycles for cycles in TIME_OUTS
                      if not any(row.alarms(kind, cycles) for row in self.rows for kind in kinds)), None)
 
@@ -62,14 +62,14 @@ class Group:
         return sum(getattr(row, name) for row in self.locked)
 
     def missed_cells(self):
-        """Share of the knots' cells."""
+        """Share of the knots' cells that give no alarm."""
         return 1 - self.sum("alarming_cells") / self.sum("knot_cells")
 
     def missed_knots(self):
         return self.sum("missed_knots") / self.sum("knots")
 
     def first_waits(self):
-        """(least, median, most)"""
+        """The first waits: (least, median, most)."""
         waits = [row.first_wait for row in self.alarming]
         return min(waits), statistics.median(waits), max(waits)
 
@@ -78,7 +78,7 @@ class Group:
 
 
 class Results:
-    """All rows but those that were cut off, which can't tell what would have been; grouped over the seeds."""
+    """All rows, grouped over the seeds, but for runs that were cut off: their outcome is unknown."""
 
     def __init__(self, path):
         rows = read_csv(path, Row)

@@ -4,7 +4,7 @@ from studies.sweeps.runs import Cache, Failure, ReportRunner, hash_of
 
 
 def brief(report):
-    """What of a run's JSON is kept."""
+    """The part of a run's JSON that is kept."""
     time_outs = report["deadlock"]["time_outs"]
     if [each["cycles"] for each in time_outs] != TIME_OUTS:
         raise Failure("the time-outs are not those that were expected")
@@ -13,7 +13,7 @@ def brief(report):
               "early_alarms": [each["early_alarms"] for each in time_outs]}
     if report["verdict"] != "deadlock":
         return record
-    # A locked run stands still, so what waits at its end waits for ever: no T is too long for it.
+    # A locked run stands still: what waits at its end waits for ever, so every T finds the same lasting alarms.
     lasting = {tuple(each[name] for name in ["knot_cells", "knot_alarms", "missed_knots"])
                + (each["first_alarm_delay"] - each["cycles"] if "first_alarm_delay" in each else "",)
                for each in time_outs}

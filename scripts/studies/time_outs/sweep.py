@@ -1,4 +1,4 @@
-"""The sweep behind scripts/study time_outs: which runs, making them, and what is written from them."""
+"""The sweep of scripts/study time_outs: its runs, how they are made, and what is written from them."""
 import pathlib
 
 from studies.time_outs import design
@@ -31,7 +31,7 @@ class TimeOutsSweep(Command):
         return Sweep(program, self.places.cache)
 
     def draw(self, results):
-        from studies.time_outs.pictures import draw  # matplotlib: only where it is needed
+        from studies.time_outs.pictures import draw  # matplotlib is needed only here
         draw(results, self.places.charts / "time_outs.png")
 
 

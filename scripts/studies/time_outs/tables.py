@@ -1,4 +1,4 @@
-"""docs/measured/time_outs.md, from the rows of time_outs.csv."""
+"""Writes docs/measured/time_outs.md from the rows of time_outs.csv."""
 import textwrap
 
 from studies.time_outs.design import LOAD_WORDS, TIME_OUTS, name_of
@@ -42,7 +42,7 @@ def machine_table(results):
 
 
 def alarm_table(results):
-    """Over all machines: share of the runs with a false alarm, false and early alarms per million cell cycles."""
+    """Of all machines: share of the runs with a false alarm, false and early alarms per million cell cycles."""
     lines = []
     for cycles in TIME_OUTS:
         line = [count(cycles)]
