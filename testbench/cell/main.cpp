@@ -162,8 +162,7 @@ void announce(const Options& options, OutputSet& outputs) {
 }
 
 int run_all(const Options& options, const std::vector<Scenario>& scenarios, OutputSet& outputs) {
-    std::vector<std::unique_ptr<CellBench>>
-        benches;  // all made before the first run: SystemC elaborates once
+    std::vector<std::unique_ptr<CellBench>> benches;  // all before the first run: SystemC elaborates once
     for (const Scenario& scenario : scenarios) {
         const std::string name = "bench_" + std::to_string(benches.size());
         benches.push_back(

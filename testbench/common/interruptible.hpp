@@ -8,7 +8,7 @@
 
 namespace raycell {
 
-/// While it lives, the first signal ends the run, a second one the program. Lives until results are
+/// While it lives, the first signal ends the run and a second one the program. Keep it until the results are
 /// published.
 class Interruptible {
   public:

@@ -92,9 +92,8 @@ class LoadWatch : public LoadListener {
         Cycle begin = 1;  ///< first cycle in which it can take a message, or begin the next trapeze
         Cycle ready = 0;  ///< cycle in which its current work is done
         Cycle last_send = 0;
-        bool works = false;  ///< distributor: is working on the oldest message of its input
-        const LoadItem* held =
-            nullptr;  ///< cell: message taken in cycle `taken`, to be sent in the same cycle
+        bool works = false;              ///< distributor: is working on the oldest message of its input
+        const LoadItem* held = nullptr;  ///< cell: taken in cycle `taken`, to be sent in the same cycle
         std::uint64_t ticket = 0;
         Cycle taken = never;
         bool set_up = false;    ///< cell: sources and viewer are known

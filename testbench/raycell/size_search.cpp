@@ -202,8 +202,8 @@ std::vector<SizeSetting> SizeSearch::steps_down(const SizeSetting& setting) cons
     return steps;
 }
 
-/// Goes on to a setting one step smaller while that meets the goal. This holds for the machine found even
-/// where the assumptions of the search fail.
+/// Goes on to a setting one step smaller while one meets the goal, so that in the end none does, even where
+/// the assumptions of the search fail.
 void SizeSearch::step_down() {
     std::optional<std::size_t> before;
     while (before != best_) {

@@ -44,7 +44,7 @@ struct Reflections {
     Errors angle;
 };
 
-/// Reflects a ray at a random point of an inner polygon of the mirror, in the cell there.
+/// Reflects a ray that arrives at a random point of an inner polygon of the mirror, in the cell there.
 void reflect_at(const Loaded& loaded, const Mirror& mirror, double grazing, Random& random,
                 Reflections& sum) {
     const int i = 1 + int(random.uniform(0, 3));
