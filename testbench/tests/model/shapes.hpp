@@ -207,7 +207,7 @@ inline Closed ball(Random& random) {
     return closed;
 }
 
-/// A wedge: a long prism over a triangle, as thin as 1/500 of its length.
+/// A wedge: a long prism over a triangle, as thin as 1/300 of its length.
 inline Closed wedge(Random& random) {
     Closed closed;
     closed.scene = empty_cube(24, 24, 24, random.whole(24, 2000));
