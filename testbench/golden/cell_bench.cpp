@@ -282,7 +282,7 @@ std::string CellBench::difference(const GoldenEvent& is, const GoldenEvent& expe
         return where + "expected: " + text_of(other);
     }
     const std::vector<std::string> names =
-        is.tokens.empty() ? std::vector<std::string>() : field_names(is.tokens[0]);
+        is.tokens.empty() ? std::vector<std::string>() : field_names(is.tokens);
     for (std::size_t i = 1; i < is.tokens.size(); ++i) {
         if (expected.tokens[i] == "*" || expected.tokens[i] == is.tokens[i]) continue;
         const std::string name = i - 1 < names.size() ? names[i - 1] : "number " + std::to_string(i);

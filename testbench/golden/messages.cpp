@@ -1,5 +1,6 @@
 #include "testbench/golden/messages.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <iterator>
@@ -246,8 +247,9 @@ std::string text_of(const Words& words, const Message& message) {
     return "none";
 }
 
-std::vector<std::string> field_names(const std::string& kind) {
+std::vector<std::string> field_names(const std::vector<std::string>& tokens) {
     Names names;
+    const std::string& kind = tokens.at(0);
     if (kind == "ray") {
         Ray ray;
         fields_of_ray(names, ray);
@@ -260,6 +262,17 @@ std::vector<std::string> field_names(const std::string& kind) {
             if (kind == load_kinds[i]) item.kind = LoadItem::Kind(i);
         }
         fields_of_load(names, item);
+        // The text says how many edges and corners follow.
+        for (const auto& [name, count] :
+             {std::pair{"edges", &item.span.edge_count}, std::pair{"corners", &item.span.outline_count}}) {
+            const auto at =
+                std::size_t(std::find(names.all.begin(), names.all.end(), name) - names.all.begin());
+            const std::string& number = at + 1 < tokens.size() ? tokens[at + 1] : "";
+            if (number.size() == 1 && number[0] >= '0' && number[0] <= '8') *count = number[0] - '0';
+            item.span.edge_count = std::min(item.span.edge_count, 4);
+            names.all.clear();
+            fields_of_load(names, item);
+        }
     }
     return names.all;
 }

@@ -13,9 +13,9 @@ namespace raycell {
 /// (docs/reference/cell_tb.md).
 std::string text_of(const Words& words, const Message& message);
 
-/// Names of the fields of a kind of message ("ray", "answer", "span", "features", "setup", "end_of_scene"),
-/// without the kind itself. A span's edges and corners have no names, since their number varies.
-std::vector<std::string> field_names(const std::string& kind);
+/// Names of the fields of a message's tokens, of which the first is its kind ("ray", "answer", "span",
+/// "features", "setup", "end_of_scene") and has no name.
+std::vector<std::string> field_names(const std::vector<std::string>& tokens);
 
 /// Reads a message from its tokens and takes its storage from `pools`. Throws GoldenError naming the field.
 Message read_message(const Words& words, const std::vector<std::string>& tokens, MessagePools& pools);

@@ -139,8 +139,25 @@ TEST(GoldenText, EveryFieldOfAMessageHasAName) {
     LoadItem item;
     for (const Message& message : {Message(&packet), Message(&answer), Message(&item)}) {
         const auto tokens = tokens_of(text_of(words, message));
-        EXPECT_EQ(field_names(tokens[0]).size(), tokens.size() - 1) << tokens[0];
+        EXPECT_EQ(field_names(tokens).size(), tokens.size() - 1) << tokens[0];
     }
+}
+
+TEST(GoldenText, EdgesAndCornersOfASpanAreNamedThoughTheirNumberVaries) {
+    const Arithmetic arithmetic;
+    LoadItem item;
+    item.kind = LoadItem::Kind::span;
+    item.span.edge_count = 2;
+    item.span.outline_count = 3;
+    const auto tokens = tokens_of(text_of(Words(arithmetic), Message(&item)));
+    const auto names = field_names(tokens);
+    ASSERT_EQ(names.size(), tokens.size() - 1);
+    const auto edges = std::find(names.begin(), names.end(), "edges");
+    ASSERT_NE(edges, names.end());
+    const std::vector<std::string> behind(edges + 1, names.end());
+    EXPECT_EQ(behind, (std::vector<std::string>{"a", "b", "c", "a", "b", "c", "corners", "corner_x",
+                                                "corner_y", "corner_z", "corner_x", "corner_y", "corner_z",
+                                                "corner_x", "corner_y", "corner_z"}));
 }
 
 TEST(GoldenText, AWrongFieldIsNamed) {
@@ -148,7 +165,7 @@ TEST(GoldenText, AWrongFieldIsNamed) {
     const Words words(arithmetic);
     RayPacket packet;
     const auto tokens = tokens_of(text_of(words, Message(&packet)));
-    const auto names = field_names("ray");
+    const auto names = field_names(tokens);
     MessagePools pools;
     for (std::size_t i = 1; i < tokens.size(); ++i) {
         auto wrong = tokens;
