@@ -226,7 +226,10 @@ Json report(const Accuracy& a) {
             {"max_error", a.max_error},
             {"off_by_1_255_percent", a.off_by_1_255_percent},
             {"off_by_0_1_percent", a.off_by_0_1_percent},
-            {"wrong_hit_percent", a.wrong_hit_percent}};
+            {"wrong_hit_percent", a.wrong_hit_percent},
+            {"ssim", a.ssim},
+            {"flip", a.flip},
+            {"relative_mse", a.relative_mse}};
 }
 
 }  // namespace raycell

@@ -63,6 +63,11 @@ int run(const CompareOptions& options) {
         std::printf("largest error               %8.5f\n", accuracy.max_error);
         std::printf("pixels off by over 1/255    %8.3f %%\n", accuracy.off_by_1_255_percent);
         std::printf("pixels off by over 0.1      %8.3f %%\n", accuracy.off_by_0_1_percent);
+        std::printf("SSIM                        %8.5f    values as the PNG has them\n", accuracy.ssim);
+        std::printf("FLIP                        %8.5f    values as sRGB, 67 pixels per degree\n",
+                    accuracy.flip);
+        std::printf("relative MSE                %8.5f    intensities, no transfer curve\n",
+                    accuracy.relative_mse);
         if (hits_known) std::printf("pixels that hit elsewhere   %8.3f %%\n", accuracy.wrong_hit_percent);
     }
     const bool passed = accuracy.psnr_db >= options.least_psnr &&
