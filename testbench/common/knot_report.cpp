@@ -4,6 +4,8 @@
 #include <array>
 #include <sstream>
 
+#include "testbench/common/svg.hpp"
+
 namespace raycell {
 namespace {
 
@@ -104,19 +106,6 @@ struct Panel {
     }
 };
 
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '<')
-            out += "&lt;";
-        else if (c == '&')
-            out += "&amp;";
-        else
-            out += c;
-    }
-    return out;
-}
-
 void draw_lines(std::ostringstream& svg, const Panel& panel) {
     const Point low = panel.corner(panel.x0, panel.y0);
     const Point high = panel.corner(panel.x1 + 1, panel.y1 + 1);
@@ -188,10 +177,6 @@ Panel close_up(const RunResult& result, int width, int height, Point origin, dou
     return panel;
 }
 
-void caption(std::ostringstream& svg, double x, double y, const std::string& text) {
-    svg << "<text x='" << x << "' y='" << y << "'>" << escaped(text) << "</text>\n";
-}
-
 }  // namespace
 
 std::string knot_svg(const RunResult& result, int width, int height) {
@@ -206,36 +191,34 @@ std::string knot_svg(const RunResult& result, int width, int height) {
     const std::size_t lines = std::min(knot.size(), listed);
     const double bottom = top + side + margin;
     std::ostringstream svg;
-    svg << "<svg xmlns='http://www.w3.org/2000/svg' width='" << 2 * side + 3 * margin << "' height='"
-        << bottom + 16 * double(lines + 2) << "' font-family='sans-serif' font-size='12'>\n"
-        << "<style>.array{fill:none;stroke:#444}.grid{stroke:#ddd}.tail{fill:#fdd08a}.knot{fill:#e4572e;"
-           "fill-opacity:.55}.wait{stroke:#111;stroke-width:1.5}rect.page{fill:#fff}</style>\n"
-        << "<defs><marker id='arrow' viewBox='0 0 8 8' refX='7' refY='4' markerWidth='7' markerHeight='7' "
-           "orient='auto'><path d='M0 0L8 4L0 8z'/></marker></defs>\n<rect class='page' width='100%' "
-           "height='100%'/>\n";
-    caption(svg, margin, 16,
-            "Deadlock, formed in cycle " + std::to_string(result.knot_formed) +
-                ". Knots: " + std::to_string(graph.knots().size()) +
-                " (red); places that only wait for one: " + std::to_string(graph.tails()) + " (orange).");
+    begin_svg(svg, 2 * side + 3 * margin, bottom + 16 * double(lines + 2),
+              ".array{fill:none;stroke:#444}.grid{stroke:#ddd}.tail{fill:#fdd08a}.knot{fill:#e4572e;"
+              "fill-opacity:.55}.wait{stroke:#111;stroke-width:1.5}");
+    svg << "<defs><marker id='arrow' viewBox='0 0 8 8' refX='7' refY='4' markerWidth='7' markerHeight='7' "
+           "orient='auto'><path d='M0 0L8 4L0 8z'/></marker></defs>\n";
+    put_text(svg, margin, 16,
+             "Deadlock, formed in cycle " + std::to_string(result.knot_formed) +
+                 ". Knots: " + std::to_string(graph.knots().size()) +
+                 " (red); places that only wait for one: " + std::to_string(graph.tails()) + " (orange).");
     for (const Panel& panel : {all, near}) {
         draw_cells(svg, panel, graph);
         draw_lines(svg, panel);
         for (const auto& each : graph.knots()) draw_edges(svg, panel, graph, each);
     }
-    caption(svg, near.origin.x, 34,
-            "Cells " + std::to_string(near.x0) + ".." + std::to_string(near.x1) + ", " +
-                std::to_string(near.y0) + ".." + std::to_string(near.y1) +
-                ": the oldest knot, what waits for what");
+    put_text(svg, near.origin.x, 34,
+             "Cells " + std::to_string(near.x0) + ".." + std::to_string(near.x1) + ", " +
+                 std::to_string(near.y0) + ".." + std::to_string(near.y1) +
+                 ": the oldest knot, what waits for what");
     for (std::size_t i = 0; i < lines; ++i) {
         const Node& node = graph.nodes()[knot[i]];
-        caption(svg, margin, bottom + 16 * double(i + 1),
-                "(" + std::to_string(node.x) + ", " + std::to_string(node.y) + ") " + node.what +
-                    " since cycle " + std::to_string(node.since) + ": " + node.holds + ", waits for " +
-                    node.wants);
+        put_text(svg, margin, bottom + 16 * double(i + 1),
+                 "(" + std::to_string(node.x) + ", " + std::to_string(node.y) + ") " + node.what +
+                     " since cycle " + std::to_string(node.since) + ": " + node.holds + ", waits for " +
+                     node.wants);
     }
     if (knot.size() > listed) {
-        caption(svg, margin, bottom + 16 * double(lines + 1),
-                "... " + std::to_string(knot.size()) + " in all");
+        put_text(svg, margin, bottom + 16 * double(lines + 1),
+                 "... " + std::to_string(knot.size()) + " in all");
     }
     svg << "</svg>\n";
     return svg.str();

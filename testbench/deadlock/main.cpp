@@ -14,48 +14,13 @@
 #include "testbench/common/new_file.hpp"
 #include "testbench/common/report_json.hpp"
 #include "testbench/common/scene_input.hpp"
+#include "testbench/common/traffic_options.hpp"
 #include "testbench/raycell/commands.hpp"
 
 namespace {
 
 using namespace raycell;
 using Json = nlohmann::ordered_json;
-struct Options {
-    RenderOptions run;  ///< array, machine, --output, --quiet
-    TrafficSettings traffic;
-};
-
-void add_options(OptionTable& table, Options& options) {
-    PictureSettings& p = options.run.picture;
-    TrafficSettings& t = options.traffic;
-    table.text(
-        "output", options.run.prefix, "PREFIX",
-        "writes PREFIX.json, PREFIX.toml and, of a run that stopped, PREFIX.waits.json; empty: no files");
-    table.size("cells", p.width, p.height, "size of the array; each cell sends a primary ray");
-    table.number("hit-probability", t.hit_probability, 0.0, 1.0,
-                 "that a ray hits in a cell that it enters; never in the one that it starts from");
-    table.number("generations", p.max_depth, 0, 62,
-                 "of rays after the primary one: so many may have to wait");
-    table.shares("branching", t.reflected, t.refracted,
-                 "probability that a hit has a reflected child, and that it has a refracted one");
-    table.choice("directions", t.directions,
-                 {{"isotropic", Directions::isotropic},
-                  {"axial", Directions::axial},
-                  {"diagonal", Directions::diagonal},
-                  {"back", Directions::back}},
-                 "of rays in the plane of the array; back: isotropic, but see turn-back");
-    table.number("turn-back", t.turn_back, 0.0, 1.0,
-                 "directions back: share of the children that return to the cell that their parent came from "
-                 "and hit there, as between facing mirrors");
-    table.number("sources", t.sources, 0, int(max_sources),
-                 "shadow rays of each hit; with them the last generation has to wait too");
-    add_communication_options(table, options.run.machine);
-    add_granularity_options(table, options.run);
-    table.number("seed", t.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1,
-                 "of every draw, and of the back-off's jitter");
-    table.costs(options.run.machine.costs);
-    table.flag("quiet", options.run.quiet, "no progress, no summary");
-}
 
 /// Whether all finished pixels equal the untimed machine's, bit for bit.
 bool equals(const Picture& picture, const Picture& golden) {
@@ -85,7 +50,7 @@ void summarise(const Json& json, std::uint64_t seed) {
               << json["messages"]["rays"]["sent"] << " sent\n";
 }
 
-int run(Options& options, const OptionTable& table) {
+int run(TrafficOptions& options, const OptionTable& table) {
     RenderOptions& o = options.run;
     OutputSet outputs(o.prefix);
     if (!o.prefix.empty()) {
@@ -146,17 +111,14 @@ std::vector<std::string> with_configuration(const std::vector<std::string>& word
 }
 
 int run(int argc, char** argv) {
-    Options options;
-    options.run.prefix.clear();
-    options.run.picture.width = options.run.picture.height = 32;
-    options.run.picture.max_depth = 3;
+    TrafficOptions options;
     CLI::App app{"Synthetic ray traffic through the cell array, without a scene: does it lock?"};
     app.name("deadlock_tb");
     OptionTable table(app);
     app.add_option("--config", options.run.config,
                    "options from a file as a run writes it; the command line has precedence")
         ->type_name("FILE");
-    add_options(table, options);
+    add_traffic_options(table, options);
     std::vector<std::string> words = with_configuration({argv, argv + argc}, app);
     return parse_and_run(app, std::move(words), [&] { return run(options, table); });
 }

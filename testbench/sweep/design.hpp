@@ -1,0 +1,48 @@
+// A sweep as its user wrote it, and the runs that it is made of.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace raycell {
+
+/// An option of the program that is run, and the values that it takes one after the other.
+struct SweepAxis {
+    std::string option;  ///< without its dashes; "scene" for the positional word
+    std::vector<std::string> values;
+};
+
+/// One run: a value of each axis.
+struct SweepPoint {
+    std::vector<std::string> values;
+    /// The options as words of a command line.
+    std::vector<std::string> words(const std::vector<SweepAxis>& axes) const;
+    /// A file name that tells the runs of a sweep apart, and changes with any option and with `program`.
+    std::string name(const std::vector<SweepAxis>& axes, const std::string& program) const;
+};
+
+/// Every combination of its axes' values is run once.
+struct SweepDesign {
+    std::vector<SweepAxis> axes;  ///< those of one value first come first, too: all that was given
+
+    /// Indices of the axes of several values, in their order.
+    std::vector<std::size_t> varying() const;
+    std::size_t size() const;
+    std::vector<SweepPoint> points() const;
+};
+
+/// Most runs of one sweep.
+constexpr std::size_t most_sweep_runs = 100000;
+
+/// Reads options with values, lists ("1,2,4") and ranges ("1..8", "8..64:8") of whole numbers; a word that
+/// the option takes as it stands is one value, whatever is in it. An option that comes several times has all
+/// the values. Words without a dash are scenes. `program` has the options. Throws UsageError for an unknown
+/// option or a value that it refuses, saying what it takes.
+SweepDesign read_sweep(const std::vector<std::string>& words, CLI::App& program);
+
+/// The words that a configuration file of a sweep stands for: keys are options, values are numbers, words,
+/// true or false, or lists. Throws UsageError naming file and line.
+std::vector<std::string> sweep_words_from_file(const std::string& path);
+
+}  // namespace raycell
