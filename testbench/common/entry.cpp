@@ -13,7 +13,10 @@
 #include <streambuf>
 
 #include "scenes/diagnostics.hpp"
+#include "testbench/common/help.hpp"
+#include "testbench/common/nearest_option.hpp"
 #include "testbench/common/signals.hpp"
+#include "testbench/common/version.hpp"
 #include "testbench/raycell/commands.hpp"
 
 namespace raycell {
@@ -92,12 +95,27 @@ void refuse_ranks(const std::string& what) {
 
 void set_failure_hook(void (*hook)(int)) { failure_hook = hook; }
 
+int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error) == 0 ? exit_done : exit_usage;
+    std::string message = error.what();
+    const CLI::App* command = &app;
+    for (const CLI::App* each : app.get_subcommands()) command = each;
+    for (const std::string& word : command->remaining()) {
+        const std::string meant = nearest_option(*command, word);
+        if (!meant.empty()) message += "; did you mean " + meant + "?";
+    }
+    std::cerr << message << "\nRun with --help for more information.\n";
+    return exit_usage;
+}
+
 int parse_and_run(CLI::App& app, std::vector<std::string> words, const std::function<int()>& run) {
+    app.formatter(std::make_shared<HelpFormatter>());
+    add_version(app);
     std::reverse(words.begin(), words.end());  // CLI11 takes a vector from its end
     try {
         app.parse(words);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? exit_done : exit_usage;
+        return end_of_parsing(app, error);
     }
     refuse_ranks("this program");
     return run();

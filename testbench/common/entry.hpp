@@ -32,7 +32,12 @@ void refuse_ranks(const std::string& what);
 /// Sets a function that run_guarded() calls with the exit code, after the message of an error.
 void set_failure_hook(void (*hook)(int code));
 
-/// Parses the words of the command line (without the program) and then runs. Returns the exit code.
+/// What is printed when parsing ends the program: help, the version, or an error, which names the option that
+/// an unknown one resembles. Returns the exit code.
+int end_of_parsing(const CLI::App& app, const CLI::ParseError& error);
+
+/// Adds --version, parses the words of the command line (without the program) and then runs. Returns the exit
+/// code.
 int parse_and_run(CLI::App& app, std::vector<std::string> words, const std::function<int()>& run);
 
 /// Runs a program and returns its exit code. An exception becomes a message on standard error, "NAME: what",

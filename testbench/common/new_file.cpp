@@ -130,7 +130,26 @@ void write_text(const std::string& path, const std::string& text) {
     file.publish();
 }
 
+OutputSet::~OutputSet() {
+    files_.clear();
+    std::error_code ignored;  // of folders that hold something
+    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder)
+        std::filesystem::remove(*folder, ignored);
+}
+
+void OutputSet::make_folder(const std::string& path) {
+    std::vector<std::filesystem::path> missing;
+    for (auto folder = std::filesystem::path(path).parent_path();
+         !folder.empty() && !std::filesystem::exists(folder); folder = folder.parent_path())
+        missing.push_back(folder);
+    for (auto folder = missing.rbegin(); folder != missing.rend(); ++folder) {
+        std::filesystem::create_directory(*folder);
+        made_.push_back(folder->string());
+    }
+}
+
 void OutputSet::announce_file(const std::string& path) {
+    make_folder(path);
     const NewFile tried(path);
     announced_.push_back(path);
 }

@@ -56,6 +56,9 @@ void write_text(const std::string& path, const std::string& text);
 class OutputSet {
   public:
     explicit OutputSet(std::string prefix) : prefix_(std::move(prefix)) {}
+    ~OutputSet();
+    OutputSet(const OutputSet&) = delete;
+    OutputSet& operator=(const OutputSet&) = delete;
 
     /// Announces PREFIX + each suffix and throws std::runtime_error if one can't be written. Leaves nothing
     /// behind.
@@ -83,7 +86,10 @@ class OutputSet {
     void publish();
 
   private:
+    void make_folder(const std::string& path);
+
     std::string prefix_;
+    std::vector<std::string> made_;  ///< folders that were not there, outermost first
     std::vector<std::string> announced_;
     std::list<NewFile> files_;
     std::vector<std::string> outdated_;

@@ -3,11 +3,29 @@
 #include "testbench/common/ray_watch.hpp"
 
 namespace raycell {
+namespace {
+
+/// Leaves out what a run puts behind its prefix; returns no error.
+std::string without_suffix(std::string& word) {
+    for (const char* suffix : {".png", ".exr", ".json", ".toml", ".csv", ".vcd"}) {
+        const std::string end = suffix;
+        const auto at = word.size() - end.size();
+        if (word.size() <= end.size() || word.substr(at) != end || word[at - 1] == '/') continue;
+        word.resize(at);
+        break;
+    }
+    return "";
+}
+
+}  // namespace
 
 void OptionTable::text(const std::string& name, std::string& target, const std::string& type,
                        const std::string& help) {
-    const std::string flags = name == "output" ? "-o,--output" : "--" + name;
-    app_.add_option(flags, target, help)->type_name(type)->capture_default_str()->take_last();
+    const bool output = name == "output";
+    CLI::Option* option = app_.add_option(output ? "-o,--output" : "--" + name, target, help);
+    option->group(group_)->type_name(type)->capture_default_str()->take_last();
+    // Whoever names a picture means the prefix of all results.
+    if (output) option->transform(CLI::Validator([](std::string& word) { return without_suffix(word); }, ""));
     entries_.push_back({name, [&target] { return nlohmann::ordered_json(target); }});
 }
 
@@ -29,7 +47,7 @@ void OptionTable::positional(const std::string& name, std::string& target, const
 }
 
 void OptionTable::flag(const std::string& name, bool& target, const std::string& help) {
-    app_.add_flag("--" + name, target, help)->take_last();
+    app_.add_flag("--" + name, target, help)->group(group_)->take_last();
     entries_.push_back({name, [&target] { return nlohmann::ordered_json(target); }});
 }
 
@@ -46,6 +64,7 @@ void OptionTable::size(const std::string& name, int& width, int& height, const s
     };
     const auto set = [parse, &width, &height](const std::string& word) { parse(word, width, height); };
     app_.add_option_function<std::string>("--" + name, set, help)
+        ->group(group_)
         ->check(CLI::Validator(check, "WxH"))
         ->default_str(std::to_string(width) + "x" + std::to_string(height))
         ->take_last();
@@ -102,6 +121,7 @@ void OptionTable::cells(const std::string& name, std::vector<CellRange>& target,
         for (const std::string& word : words) parse_cells(word, target.emplace_back());
     };
     app_.add_option_function<std::vector<std::string>>("--" + name, set, help)
+        ->group(group_)
         ->check(CLI::Validator(check, "X0..X1,Y0..Y1"))
         ->allow_extra_args(false);
     entries_.push_back({name, [&target] {
@@ -136,6 +156,7 @@ void OptionTable::shares(const std::string& name, double& p, double& q, const st
     };
     app_.add_option_function<std::string>(
             "--" + name, [parse, &p, &q](const std::string& word) { parse(word, p, q); }, help)
+        ->group(group_)
         ->check(CLI::Validator(check, "P[,Q]"))
         ->default_str(text())
         ->take_last();
@@ -153,6 +174,7 @@ void OptionTable::rays(const std::string& name, std::vector<std::uint64_t>& targ
         for (const std::string& word : words) parse_ray(word, target.emplace_back());
     };
     app_.add_option_function<std::vector<std::string>>("--" + name, set, help)
+        ->group(group_)
         ->check(CLI::Validator(check, "PIXEL/PART"))
         ->allow_extra_args(false);
     entries_.push_back({name, [&target] {
@@ -170,6 +192,7 @@ void OptionTable::window(const std::string& name, CycleWindow& target, const std
     };
     const auto set = [&target](const std::string& word) { parse_window(word, target); };
     app_.add_option_function<std::string>("--" + name, set, help)
+        ->group(group_)
         ->check(CLI::Validator(check, "FROM:TO"))
         ->default_str(":")
         ->take_last();
@@ -199,6 +222,7 @@ void OptionTable::costs(CostTable& table) {
     };
     app_.add_option_function<std::vector<std::string>>(
             "--cost", set, "cycles of an operation; may come several times. " + names)
+        ->group(group_)
         ->check(CLI::Validator(check, "NAME=CYCLES"))
         ->allow_extra_args(false);  // one entry each time: the next word may be the scene
     entries_.push_back({"cost", [&table] {
@@ -217,6 +241,7 @@ nlohmann::ordered_json OptionTable::values() const {
 }
 
 void add_placement_options(OptionTable& table, RenderOptions& options) {
+    table.group("Scene");
     PictureSettings& p = options.picture;
     table.text("scene", options.scene, "FILE", "scene: .nff or .obj");
     table.positional("file", options.scene, "the same; has precedence over --scene");
@@ -231,14 +256,18 @@ void add_placement_options(OptionTable& table, RenderOptions& options) {
 void add_scene_options(OptionTable& table, RenderOptions& options) {
     PictureSettings& p = options.picture;
     add_placement_options(table, options);
+    table.group("Results");
     table.text("output", options.prefix, "PREFIX",
                "where results go: PREFIX.exr, PREFIX.png, PREFIX.json, ...");
+    table.group("Rays");
     table.number("max-depth", p.max_depth, 0, 62, "generations of rays after the primary one");
     table.number("min-weight", p.min_weight, 0.0, 1.0, "share of a pixel below which a ray is not sent");
+    table.group("Results");
     table.flag("quiet", options.quiet, "no progress, no summary");
 }
 
 void add_link_options(OptionTable& table, MachineSettings& m) {
+    table.group("Links and clock");
     table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
     table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
     table.number(
@@ -249,6 +278,7 @@ void add_link_options(OptionTable& table, MachineSettings& m) {
 }
 
 void add_communication_options(OptionTable& table, MachineSettings& m) {
+    table.group("Ray store, buffers and networks");
     table.number("ray-store", m.ray_store, 1, 1024, "M, rays that a cell can store, slots");
     table.number("buffer", m.buffer_depth, 1, 1024, "depth of every buffer, messages");
     table.choice("networks", m.networks,
@@ -266,6 +296,7 @@ void add_communication_options(OptionTable& table, MachineSettings& m) {
 }
 
 void add_granularity_options(OptionTable& table, RenderOptions& options) {
+    table.group("Simulation");
     table.choice(
         "granularity", options.hosts,
         {{"auto", Hosts::automatic}, {"cell", Hosts::cell}, {"tile", Hosts::tile}},
@@ -277,6 +308,7 @@ void add_granularity_options(OptionTable& table, RenderOptions& options) {
 }
 
 void add_watch_options(OptionTable& table, RenderOptions& options) {
+    table.group("Looking inside");
     table.rays("watch-ray", options.watch_rays,
                "prints the life of the ray with this id and of its children; may come several times");
     table.cells("watch-pixel", options.watch_pixels,
@@ -284,6 +316,7 @@ void add_watch_options(OptionTable& table, RenderOptions& options) {
 }
 
 void add_voxel_options(OptionTable& table, PictureSettings& p) {
+    table.group("Voxels and hit test");
     table.number("depth", p.depth_levels, 1, 65536, "depth levels of the cube");
     table.choice("hit", p.hit,
                  {{"edge", HitTest::edge},
@@ -304,6 +337,7 @@ void add_voxel_options(OptionTable& table, PictureSettings& p) {
 }
 
 void add_word_options(OptionTable& table, NumberSettings& n) {
+    table.group("Numbers");
     table.choice("arithmetic", n.arithmetic, {{"fixed", Numbers::fixed}, {"exact", Numbers::exact}},
                  "numbers of the cell: words of word-bits, or double precision");
     table.number("word-bits", n.word_bits, 8, 32, "bits of a word in messages, voxels and the ALU");
@@ -315,14 +349,17 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     PictureSettings& p = options.picture;
     MachineSettings& m = options.machine;
     add_voxel_options(table, p);
+    table.group("Simulation");
     table.choice("stage", p.stage, {{"trace", RunStage::trace}, {"load", RunStage::load}},
                  "trace rays, or stop after loading and show the nearest voxels");
     table.choice("engine", options.engine, {{"timed", Engine::timed}, {"untimed", Engine::untimed}},
                  "SystemC cells, or the recursive reference without time");
     add_granularity_options(table, options);
+    table.group("Rays beyond the cube");
     table.choice("exterior", p.exterior, {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},
                  "rays that leave the cube: traced on by the exterior processors, or lost");
     add_word_options(table, p.numbers);
+    table.group("Numbers");
     const std::vector<std::pair<std::string, Iteration>> iterations = {
         {"newton", Iteration::newton}, {"table", Iteration::table}, {"rounded", Iteration::rounded}};
     OperatorSettings& o = p.numbers.operators;
@@ -339,18 +376,24 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     table.table_size("root-table", o.root_table, "the same; 0: 64 at 20 bits");
     table.table_size("power-table", o.power_table, "the same, of each of its two tables; 0: 32 at 20 bits");
     add_communication_options(table, m);
+    table.group("Rays");
     table.number("normal-offset", p.normal_offset, -1.0, 1.0,
                  "start of secondary rays off their polygon, cells; negative: what suits the arithmetic");
+    table.group("Rays beyond the cube");
     table.number("exterior-processors", m.exterior_processors, 1, 1000000, "processors outside the cube");
     table.number("exterior-latency", m.exterior_latency, 1, 1000000000,
                  "cycles that one of them takes for a ray");
+    table.group("Links and clock");
     table.number("seed", m.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1, "of the back-off's jitter");
+    table.group("Costs");
     table.costs(m.costs);
+    table.group("Truth");
     table.flag("truth", options.truth, "render the truth too and report the accuracy");
     table.flag("clip-truth", options.clip_truth, "clip the truth to the cube");
 }
 
 void add_array_options(OptionTable& table, RenderOptions& options) {
+    table.group("Loaded arrays");
     table.text("save-array", options.save_array, "FILE",
                "keep the loaded array, for other traces of this scene and size");
     table.text("load-array", options.load_array, "FILE",
@@ -358,6 +401,7 @@ void add_array_options(OptionTable& table, RenderOptions& options) {
 }
 
 void add_probe_options(OptionTable& table, RenderOptions& options) {
+    table.group("Looking inside");
     ProbeOptions& p = options.probes;
     table.cells("probe", p.cells,
                 "waveforms of these cells: PREFIX.vcd, PREFIX.gtkw; may come several times");
@@ -371,6 +415,14 @@ void add_probe_options(OptionTable& table, RenderOptions& options) {
     table.cells("golden", options.golden,
                 "messages into and out of these cells, for cell_tb and the test of a cell of your own: "
                 "PREFIX.golden_X_Y.txt; may come several times");
+}
+
+void add_render_options(OptionTable& table, RenderOptions& options) {
+    add_scene_options(table, options);
+    add_machine_options(table, options);
+    add_watch_options(table, options);
+    add_array_options(table, options);
+    add_probe_options(table, options);
 }
 
 }  // namespace raycell

@@ -48,6 +48,9 @@ class OptionTable {
   public:
     explicit OptionTable(CLI::App& app) : app_(app) {}
 
+    /// The heading in --help of the options that are added from now on.
+    void group(const std::string& name) { group_ = name; }
+
     /// A whole or real number from least to most.
     template <typename T>
     void number(const std::string& name, T& target, T least, T most, const std::string& help);
@@ -83,6 +86,7 @@ class OptionTable {
         std::function<nlohmann::ordered_json()> value;
     };
     CLI::App& app_;
+    std::string group_ = "Options";
     std::vector<Entry> entries_;
 };
 
@@ -133,6 +137,8 @@ void add_granularity_options(OptionTable& table, RenderOptions& options);
 void add_watch_options(OptionTable& table, RenderOptions& options);
 /// The other options of render.
 void add_machine_options(OptionTable& table, RenderOptions& options);
+/// All of render's but --config and what several ranks need.
+void add_render_options(OptionTable& table, RenderOptions& options);
 /// Loaded arrays as files.
 void add_array_options(OptionTable& table, RenderOptions& options);
 /// Waveforms and golden vectors of cells.
@@ -157,6 +163,7 @@ void OptionTable::number(const std::string& name, T& target, T least, T most, co
     now << target;
     app_.add_option_function<std::string>(
             "--" + name, [&target](const std::string& word) { parse_number(word, target); }, help)
+        ->group(group_)
         ->check(CLI::Validator(in_range, range.str()))
         ->default_str(now.str())
         ->take_last();
@@ -186,6 +193,7 @@ void OptionTable::choice(const std::string& name, E& target, std::vector<std::pa
         return "expected one of " + words + ", not '" + printable(word) + "'";
     };
     app_.add_option_function<std::string>("--" + name, set, help)
+        ->group(group_)
         ->check(CLI::Validator(known, words))
         ->default_str(name_of_value(target))
         ->take_last();

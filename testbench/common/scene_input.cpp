@@ -52,11 +52,14 @@ CellScene read_and_place(const RenderOptions& options, const OutputSet& outputs)
 
 void check_place(const std::string& option, const std::string& path) {
     const std::filesystem::path file(path);
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    // Folders that are not there will be made.
+    std::filesystem::path folder = file.parent_path();
+    while (!folder.empty() && !std::filesystem::exists(folder)) folder = folder.parent_path();
+    if (folder.empty()) folder = ".";
     if (file.filename().empty() || !std::filesystem::is_directory(folder) ||
         access(folder.c_str(), W_OK | X_OK) != 0) {
         throw UsageError(option + " " + path +
-                         ": expected a name in a folder that exists and can be written to");
+                         ": expected a name in a folder that can be written to, or made where it is missing");
     }
 }
 

@@ -27,5 +27,7 @@ Command add_render_command(CLI::App& program);
 Command add_truth_command(CLI::App& program);
 Command add_compare_command(CLI::App& program);
 Command add_size_command(CLI::App& program);
+Command add_sweep_command(CLI::App& program);
+Command add_completion_command(CLI::App& program);
 
 }  // namespace raycell

@@ -6,7 +6,9 @@
 #include "scenes/diagnostics.hpp"
 #include "testbench/common/configuration.hpp"
 #include "testbench/common/entry.hpp"
+#include "testbench/common/help.hpp"
 #include "testbench/common/options.hpp"
+#include "testbench/common/version.hpp"
 #include "testbench/raycell/commands.hpp"
 
 namespace {
@@ -39,24 +41,26 @@ std::vector<std::string> with_configuration(CLI::App& program, std::vector<std::
 int run(int argc, char** argv) {
     CLI::App program{"Simulator of the cellular ray-tracing machine of 1990"};
     program.name("raycell");
-    program.set_version_flag("--version", "0.1");
+    program.formatter(std::make_shared<HelpFormatter>());
+    add_version(program);
     program.require_subcommand(1);
-    const std::vector<Command> commands = {add_render_command(program), add_truth_command(program),
-                                           add_compare_command(program), add_size_command(program)};
+    const std::vector<Command> commands = {add_render_command(program),  add_truth_command(program),
+                                           add_compare_command(program), add_size_command(program),
+                                           add_sweep_command(program),   add_completion_command(program)};
     std::vector<std::string> words(argv + 1, argv + argc);
     if (!words.empty() && words.front().rfind("-", 0) != 0) {
         const auto named = [&](const Command& c) { return c.app->get_name() == words.front(); };
         const auto command = std::find_if(commands.begin(), commands.end(), named);
         if (command == commands.end()) {
             throw UsageError("unknown command '" + printable(words.front()) +
-                             "'; expected render, truth, compare or size");
+                             "'; expected render, truth, compare, size, sweep or completion");
         }
         words = with_configuration(program, std::move(words), *command->app);
     }
     try {
         parse(program, words);
     } catch (const CLI::ParseError& error) {
-        return program.exit(error) == 0 ? exit_done : exit_usage;
+        return end_of_parsing(program, error);
     }
     for (const Command& command : commands) {
         if (!command.app->parsed()) continue;

@@ -368,11 +368,7 @@ Command add_render_command(CLI::App& program) {
     app->add_option("--config", options->config,
                     "options from a file as a run writes it; the command line has precedence")
         ->type_name("FILE");
-    add_scene_options(*table, *options);
-    add_machine_options(*table, *options);
-    add_watch_options(*table, *options);
-    add_array_options(*table, *options);
-    add_probe_options(*table, *options);
+    add_render_options(*table, *options);
     add_rank_options(*app, *options);
     return {app, [options, table] { return run(*options, *table); }};
 }

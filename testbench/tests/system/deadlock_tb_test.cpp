@@ -86,8 +86,9 @@ TEST(DeadlockTb, LeavesNoGraphOfAnEarlierRunBesideAResultWithoutOne) {
 
 /// Runs the independent search that the sweep uses.
 Finished check_knots(const Workshop& workshop, const fs::path& graph) {
-    return workshop.run_program("/usr/bin/python3",
-                                {fs::path(RAYCELL_SOURCE_DIR) / "scripts/studies/deadlock/check_knots.py", graph});
+    return workshop.run_program(
+        "/usr/bin/python3",
+        {fs::path(RAYCELL_SOURCE_DIR) / "scripts/studies/deadlock/check_knots.py", graph});
 }
 
 TEST(DeadlockTb, ItsKnotsAreAcceptedByASearchOfTheSweepsOwn) {

@@ -161,13 +161,69 @@ TEST(Usage, FilesThatAreNotThereAreNamed) {
 
 TEST(Usage, OutputWhereNoneCanBeIsRefusedBeforeAnyWork) {
     const Workshop workshop;
-    for (const std::string prefix : {"missing/a", "results/", "", "stdout.txt/a"}) {
+    for (const std::string prefix : {"results/", "", "stdout.txt/a", "stdout.txt/b/a"}) {
         SCOPED_TRACE("-o '" + prefix + "'");
         for (const std::string command : {"render", "truth"}) {
             // The scene does not exist, but is not even looked for.
             expect_refused(workshop, workshop.run({command, "none.nff", "-o", prefix}), "--output " + prefix);
         }
     }
+}
+
+TEST(Usage, FoldersForResultsAreMadeAndKeptOnlyWithResultsInThem) {
+    const Workshop workshop;
+    const Words words = {"--cells", "4x4", "--quiet", "-o", "results/new/folders/a"};
+    const Finished refused = workshop.run(joined({"render", "none.nff"}, words));
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_TRUE(workshop.results().empty()) << "no empty folder either";
+    const Finished done = workshop.run(joined({"render", own_scene("cornell.nff").string()}, words));
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_TRUE(fs::exists(workshop.result("new/folders/a.json")));
+}
+
+TEST(Usage, APictureNamedAsOutputMeansItsPrefix) {
+    const Workshop workshop;
+    const Finished finished = workshop.run(
+        {"render", own_scene("cornell.nff").string(), "--cells", "4x4", "--quiet", "-o", "results/a.png"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_TRUE(fs::exists(workshop.result("a.png")));
+    EXPECT_FALSE(fs::exists(workshop.result("a.png.png")));
+}
+
+TEST(Usage, AMisspeltOptionIsToldWhatItMayHaveMeant) {
+    const Workshop workshop;
+    for (const auto& [wrong, right] :
+         std::vector<std::pair<std::string, std::string>>{{"--ray-stor", "--ray-store?"},
+                                                          {"--netwroks", "--networks?"},
+                                                          {"--word_bits", "--word-bits?"}}) {
+        const Finished finished = workshop.run({"render", "none.nff", wrong, "8"});
+        EXPECT_EQ(finished.exit_code, 1);
+        EXPECT_TRUE(contains(finished.err, "did you mean " + right)) << finished.err;
+    }
+    EXPECT_FALSE(contains(workshop.run({"render", "none.nff", "--qqqqqq", "8"}).err, "did you mean"));
+}
+
+TEST(Usage, EveryProgramSaysWhatItWasBuiltFrom) {
+    const Workshop workshop;
+    for (const std::string program : {RAYCELL_PROGRAM, RAYCELL_DEADLOCK_TB}) {
+        const Finished finished = workshop.run_program(program, {"--version"});
+        EXPECT_EQ(finished.exit_code, 0);
+        for (const char* part : {"0.2.0, ", "GCC ", "SystemC 2."})
+            EXPECT_TRUE(contains(finished.out, part)) << finished.out;
+    }
+}
+
+TEST(Usage, CompletionIsAScriptThatBashAccepts) {
+    const Workshop workshop;
+    const Finished finished = workshop.run({"completion"});
+    EXPECT_EQ(finished.exit_code, 0);
+    workshop.write("completion.bash", finished.out);
+    const Finished completed = workshop.run_program(
+        "/bin/bash",
+        {"-c",
+         "source completion.bash; COMP_WORDS=(raycell render --networks ''); COMP_CWORD=3; _raycell; "
+         "echo ${COMPREPLY[@]}; COMP_WORDS=(raycell sw); COMP_CWORD=1; _raycell; echo ${COMPREPLY[@]}"});
+    EXPECT_EQ(completed.out, "half quadrant split shared\nsweep\n") << completed.err;
 }
 
 TEST(Usage, HelpEndsWellAndNamesUnits) {

@@ -1,0 +1,23 @@
+# Writes OUT with the commit that SOURCE is at, if it has changed: run at every build.
+find_program(git git)
+set(commit "not from a repository")
+if(git)
+  execute_process(COMMAND ${git} -C ${SOURCE} rev-parse --short=10 HEAD
+      OUTPUT_VARIABLE head OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+  if(NOT failed)
+    set(commit "commit ${head}")
+    execute_process(COMMAND ${git} -C ${SOURCE} status --porcelain --untracked-files=no
+        OUTPUT_VARIABLE changes ERROR_QUIET)
+    if(changes)
+      string(APPEND commit " and changes")
+    endif()
+  endif()
+endif()
+set(text "#define RAYCELL_BUILT_FROM \"${commit}\"\n")
+set(old "")
+if(EXISTS ${OUT})
+  file(READ ${OUT} old)
+endif()
+if(NOT text STREQUAL old)
+  file(WRITE ${OUT} "${text}")
+endif()
