@@ -32,9 +32,26 @@ raycell_setup() {
     fi
 }
 
-# An up-to-date build prints nothing and compiles nothing; a failing one prints its last lines.
+# Of a build's lines "[n/N] what is done": the last one on a terminal, every twentieth elsewhere.
+raycell_progress() {
+    local line number
+    while IFS= read -r line; do
+        [[ $line == \[*/*\]* ]] || continue
+        number=${line%%/*}
+        number=${number#[}
+        if [ -t 2 ]; then
+            printf '\r\033[K%.*s' "$((${COLUMNS:-100} - 1))" "$line" >&2
+        elif ((number % 20 == 0)); then
+            echo "$line" >&2
+        fi
+    done
+    if [ -t 2 ]; then printf '\r\033[K' >&2; fi
+}
+
+# Prints progress and, at the end, how long it took; nothing if all is up to date. A failing build prints its
+# last lines.
 raycell_build() {
-    local build=$1
+    local build=$1 started=$SECONDS
     shift
     local log="$build/build.log"
     mkdir -p "$build"
@@ -45,9 +62,23 @@ raycell_build() {
     fi
     local targets=()
     [ $# -gt 0 ] && targets=(--target "$@")
-    if ! cmake --build "$build" "${targets[@]}" >"$log" 2>&1; then
+    if ! cmake --build "$build" "${targets[@]}" 2>&1 | tee "$log" | raycell_progress; then
         tail -n 60 "$log" >&2
         echo "The build in $build failed; the whole log is $log" >&2
         exit 1
     fi
+    local took=$((SECONDS - started))
+    if ((took > 2)); then echo "Built $build in $((took / 60)) min $((took % 60)) s" >&2; fi
 }
+
+# Whether the words ask for help alone.
+raycell_asks_help() {
+    local word
+    for word in "$@"; do
+        if [ "$word" = -h ] || [ "$word" = --help ]; then return 0; fi
+    done
+    return 1
+}
+
+# The comment at the head of a script.
+raycell_usage() { sed -n '2,/^set/{s/^# \{0,1\}//p}' "$1"; }
