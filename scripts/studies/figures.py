@@ -64,7 +64,10 @@ class Jobs:
 def main(root, words):
     parser = argparse.ArgumentParser(prog="scripts/study figures", description=__doc__)
     parser.add_argument("folder", nargs="?", metavar="SCENE_FOLDER", help="of the SPD scenes")
-    jobs = Jobs(root, programs.spd_folder("figures", root, parser.parse_args(words).folder))
+    programs.add_out(parser, root)
+    options = parser.parse_args(words)
+    jobs = Jobs(root, programs.spd_folder("figures", root, options.folder))
+    out = programs.made(options.out)
     parts = ["# Figures\n\nMade by `scripts/study figures`.\n",
              "## Whole jobs\n\nAs `raycell render SCENE --cells SIZE`, processor seconds on one core of whatever machine this "
              "was; they vary from run to run and machine to machine.\n", "\n".join(jobs.whole()),
@@ -75,9 +78,9 @@ def main(root, words):
              "cells.\n", "\n".join(jobs.offsets()),
              "\n## The truth against the SPD's published counts\n\n513x513 rays, tree depth 5 with the eye ray as 1, no "
              "cut by weight.\n", "\n".join(jobs.counts())]
-    (programs.measured(root) / "figures.md").write_text("\n".join(parts) + "\n")
+    (out / "figures.md").write_text("\n".join(parts) + "\n")
     table = programs.run(root / "build" / "operators_tb").output
-    (programs.measured(root) / "operators.md").write_text(
+    (out / "operators.md").write_text(
         "# The cell's operators\n\nMeasured over the whole range of arguments by `build/operators_tb`, written by "
         "`scripts/study figures`; `--word-bits N` for other words.\n\n" + table)
-    print((programs.measured(root) / "figures.md").read_text())
+    print((out / "figures.md").read_text())

@@ -48,7 +48,7 @@ def bits_table(results):
     return "\n".join(lines)
 
 
-def draw(root, cache, results, scene):
+def draw(out, cache, results, scene):
     from matplotlib import pyplot as plt  # needed only here
     figure, axes = plt.subplots(2, len(RUNGS), figsize=(3.1 * len(RUNGS), 6.6))
     for column, rung in enumerate(reversed(RUNGS)):
@@ -64,15 +64,18 @@ def draw(root, cache, results, scene):
     axes[0][0].set_ylabel(f"{scene}, 128x128 cells")
     axes[1][0].set_ylabel("difference from the truth, x8")
     figure.tight_layout()
-    figure.savefig(programs.measured(root) / "ladder.png", dpi=72)
+    figure.savefig(out / "ladder.png", dpi=72)
 
 
 def main(root, words):
     parser = argparse.ArgumentParser(prog="scripts/study ladder", description=__doc__)
     parser.add_argument("folder", nargs="?", metavar="SCENE_FOLDER", help="of the SPD scenes")
-    folder = programs.spd_folder("ladder", root, parser.parse_args(words).folder)
+    programs.add_out(parser, root)
+    options = parser.parse_args(words)
+    folder = programs.spd_folder("ladder", root, options.folder)
+    out = programs.made(options.out)
     program = hashlib.sha256((root / "build" / "raycell").read_bytes()).hexdigest()[:12]
-    cache = programs.measured(root) / "cache" / f"ladder-{program}"
+    cache = out / "cache" / f"ladder-{program}"
     cache.mkdir(parents=True, exist_ok=True)
     jobs = [(s, r, m) for s in SCENES for r in RUNGS for m in MODES]
     results = {}
@@ -83,7 +86,7 @@ def main(root, words):
             print(f"\r{done} of {len(jobs)} runs", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
 
-    with open(programs.measured(root) / "ladder.csv", "w", newline="") as file:
+    with open(out / "ladder.csv", "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["scene", "hit", "arithmetic", "exterior", "psnr_db", "wrong_hit_percent", "off_by_0_1_percent",
                          "bits_per_voxel", "voxels", "load_cycles", "trace_cycles"])
@@ -114,6 +117,6 @@ What a rung costs (20 bits, `--exterior host`, the range over the five scenes):
 
 {bits_table(results)}
 """
-    (programs.measured(root) / "ladder.md").write_text(text)
-    draw(root, cache, results, "teapot-s4")
+    (out / "ladder.md").write_text(text)
+    draw(out, cache, results, "teapot-s4")
     print(text)

@@ -22,9 +22,21 @@ class Failed(Exception):
     """A program ended with an exit code other than 0: the command, the code and its last output."""
 
 
+def add_out(parser, root):
+    """Adds --out, the folder of the tables and charts; nothing is written over the project's own unless it is named."""
+    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", default=measured(root),
+                        help="of the tables and charts; default: out/measured")
+
+
 def measured(root):
-    """The folder of the measured tables and charts."""
-    return root / "docs" / "measured"
+    """The default folder of tables and charts."""
+    return root / "out" / "measured"
+
+
+def made(folder):
+    """The folder, made if it is not there."""
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
 
 def run(*words):

@@ -149,7 +149,7 @@ def main(root, words):
     parser.add_argument("--cells", default="128x128", metavar="WxH", help="size of the array; default: 128x128")
     parser.add_argument("--program", type=pathlib.Path, default=root / "build" / "raycell", help="the raycell to run")
     parser.add_argument("--out", type=pathlib.Path, default=programs.measured(root) / "speed.md", metavar="FILE",
-                        help="default: docs/measured/speed.md")
+                        help="default: out/measured/speed.md")
     options = parser.parse_args(words)
     scenes = [options.folder / f"{name}.nff" for name in SCENES]
     for scene in scenes:

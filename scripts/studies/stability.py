@@ -210,17 +210,19 @@ def main(root, words):
     parser.add_argument("seed", nargs="?", default="1", metavar="SEED", help="default: 1")
     parser.add_argument("--program", type=pathlib.Path, default=root / "build" / "stability_tb",
                         help="the stability_tb to run")
+    programs.add_out(parser, root)
     options = parser.parse_args(words)
+    out = programs.made(options.out)
     with tempfile.TemporaryDirectory() as folder:
         run = programs.run(options.program, "--csv", folder, "--seed", options.seed)
-        draw(pathlib.Path(folder), programs.measured(root) / "stability.png")
+        draw(pathlib.Path(folder), out / "stability.png")
     first, tables = run.output.split("\n", 1)
     text = f"""# Where the methods break
 
 Made by `scripts/study stability`; {first.lower()}. `exact` is double precision, `fixed N` words of N bits; lengths
-are in cell widths. docs/measured/stability.png draws the tables.
+are in cell widths. stability.png draws the tables.
 
 {summary(tables)}
 {tables}"""
-    (programs.measured(root) / "stability.md").write_text(text)
+    (out / "stability.md").write_text(text)
     print(summary(tables))

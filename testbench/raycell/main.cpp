@@ -55,7 +55,8 @@ int run(int argc, char** argv) {
             throw UsageError("unknown command '" + printable(words.front()) +
                              "'; expected render, truth, compare, size, sweep or completion");
         }
-        words = with_configuration(program, std::move(words), *command->app);
+        // A sweep's file has lists and ranges: it reads it itself.
+        if (words.front() != "sweep") words = with_configuration(program, std::move(words), *command->app);
     }
     try {
         parse(program, words);

@@ -59,10 +59,10 @@ std::vector<SweepRun> runs_of(const SweepDesign& design, const SweepOptions& opt
     std::vector<SweepRun> runs;
     for (const SweepPoint& point : design.points()) {
         SweepRun run;
-        run.prefix = (fs::path(folder) / point.name(design.axes, version_text())).string();
+        run.prefix = (fs::path(folder) / design.name(point, version_text())).string();
         run.command = {program};
         if (!options.synthetic) run.command.emplace_back("render");
-        for (const std::string& word : point.words(design.axes)) run.command.push_back(word);
+        for (const std::string& word : design.words(point)) run.command.push_back(word);
         run.command.insert(run.command.end(), {"--quiet", "--output=" + run.prefix});
         runs.push_back(std::move(run));
     }
@@ -115,6 +115,10 @@ std::string configuration_of(const SweepDesign& design, bool synthetic) {
         } else {
             values[axis.option] = axis.values;
         }
+    }
+    for (const std::string& word : design.fixed) {
+        const auto equals = word.find('=');
+        values[word.substr(2, equals - 2)].push_back(word.substr(equals + 1));
     }
     return to_toml(values);
 }

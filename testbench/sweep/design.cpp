@@ -49,6 +49,12 @@ std::vector<std::string> split(const std::string& word) {
     return parts;
 }
 
+/// What no sweep can say of its runs.
+bool is_a_runs_own(const std::string& name) {
+    const char* const own[] = {"output", "config", "quiet", "help", "save-array", "load-array"};
+    return std::find(std::begin(own), std::end(own), name) != std::end(own);
+}
+
 class Reader {
   public:
     explicit Reader(CLI::App& program) : program_(program) {}
@@ -89,8 +95,7 @@ class Reader {
 
   private:
     const CLI::Option* known(const std::string& name) const {
-        const char* const own[] = {"output", "config", "quiet", "help", "save-array", "load-array"};
-        const bool refused = std::find(std::begin(own), std::end(own), name) != std::end(own);
+        const bool refused = is_a_runs_own(name);
         const CLI::Option* option = refused ? nullptr : program_.get_option_no_throw("--" + name);
         if (option) return option;
         const std::string meant = nearest_option(program_, "--" + name);
@@ -124,6 +129,11 @@ class Reader {
     }
 
     void add(const std::string& name, const std::string& value) {
+        const CLI::Option* option = program_.get_option_no_throw("--" + name);
+        if (option && option->get_items_expected_max() > 1) {
+            design_.fixed.push_back("--" + name + "=" + value);
+            return;
+        }
         auto& axes = design_.axes;
         auto axis =
             std::find_if(axes.begin(), axes.end(), [&](const SweepAxis& a) { return a.option == name; });
@@ -138,19 +148,21 @@ class Reader {
 
 }  // namespace
 
-std::vector<std::string> SweepPoint::words(const std::vector<SweepAxis>& axes) const {
+std::vector<std::string> SweepDesign::words(const SweepPoint& point) const {
     std::vector<std::string> all;
-    for (std::size_t i = 0; i < axes.size(); ++i) all.push_back("--" + axes[i].option + "=" + values[i]);
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        all.push_back("--" + axes[i].option + "=" + point.values[i]);
+    all.insert(all.end(), fixed.begin(), fixed.end());
     return all;
 }
 
-std::string SweepPoint::name(const std::vector<SweepAxis>& axes, const std::string& program) const {
+std::string SweepDesign::name(const SweepPoint& point, const std::string& program) const {
     std::string text;
     for (std::size_t i = 0; i < axes.size(); ++i) {
         if (axes[i].values.size() < 2) continue;
         const bool scene = axes[i].option == "scene";
         text += (text.empty() ? "" : "_") + (scene ? "" : axes[i].option + "=") +
-                (scene ? std::filesystem::path(values[i]).stem().string() : values[i]);
+                (scene ? std::filesystem::path(point.values[i]).stem().string() : point.values[i]);
     }
     for (char& c : text) {
         if (c == '/' || c == '\\' || c == ' ') c = '-';
@@ -159,7 +171,7 @@ std::string SweepPoint::name(const std::vector<SweepAxis>& axes, const std::stri
     if (text.size() > longest) text.resize(longest);
     Fnv hash;
     std::string everything = program;
-    for (const std::string& word : words(axes)) everything += '\n' + word;
+    for (const std::string& word : words(point)) everything += '\n' + word;
     for (const char c : everything) hash.add(std::uint64_t(static_cast<unsigned char>(c)));
     char digits[17];
     std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash.value()));
@@ -210,6 +222,8 @@ std::vector<std::string> sweep_words_from_file(const std::string& path) {
     };
     std::vector<std::string> words;
     const auto add = [&](const std::string& key, const toml::node& node) {
+        // An empty word is the default of a file's name.
+        if (is_a_runs_own(key) || node.value_exact<std::string>() == std::string()) return;
         std::ostringstream value;
         if (const auto word = node.value_exact<std::string>()) {
             value << *word;

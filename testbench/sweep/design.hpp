@@ -16,20 +16,22 @@ struct SweepAxis {
 /// One run: a value of each axis.
 struct SweepPoint {
     std::vector<std::string> values;
-    /// The options as words of a command line.
-    std::vector<std::string> words(const std::vector<SweepAxis>& axes) const;
-    /// A file name that tells the runs of a sweep apart, and changes with any option and with `program`.
-    std::string name(const std::vector<SweepAxis>& axes, const std::string& program) const;
 };
 
 /// Every combination of its axes' values is run once.
 struct SweepDesign {
-    std::vector<SweepAxis> axes;  ///< those of one value first come first, too: all that was given
+    std::vector<SweepAxis> axes;  ///< in the order in which they were given
+    /// Of every run: options that may come several times in one ("--cost=walk_step=4").
+    std::vector<std::string> fixed;
 
     /// Indices of the axes of several values, in their order.
     std::vector<std::size_t> varying() const;
     std::size_t size() const;
     std::vector<SweepPoint> points() const;
+    /// A run's options as words of a command line.
+    std::vector<std::string> words(const SweepPoint& point) const;
+    /// A file name that tells the runs of a sweep apart, and changes with any option and with `program`.
+    std::string name(const SweepPoint& point, const std::string& program) const;
 };
 
 /// Most runs of one sweep.
@@ -41,8 +43,9 @@ constexpr std::size_t most_sweep_runs = 100000;
 /// option or a value that it refuses, saying what it takes.
 SweepDesign read_sweep(const std::vector<std::string>& words, CLI::App& program);
 
-/// The words that a configuration file of a sweep stands for: keys are options, values are numbers, words,
-/// true or false, or lists. Throws UsageError naming file and line.
+/// The words that a configuration file of a sweep or of a run stands for: keys are options, values are
+/// numbers, words, true or false, or lists. What can't be swept is left out. Throws UsageError naming file
+/// and line.
 std::vector<std::string> sweep_words_from_file(const std::string& path);
 
 }  // namespace raycell

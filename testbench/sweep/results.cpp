@@ -18,7 +18,7 @@ std::string grouped(std::uint64_t number) {
 
 std::string line(const std::vector<std::string>& cells) {
     std::string text = "|";
-    for (const std::string& cell : cells) text += " " + cell + " |";
+    for (const std::string& cell : cells) text += (cell.empty() ? "" : " " + cell) + " |";
     return text + "\n";
 }
 
@@ -100,7 +100,7 @@ SweepRow row_of(const SweepPoint& point, const Json& report) {
         row.register_bits = bits.at("registers").at("total");
         row.voxel_bits = report.at("voxels").at("max_bits_per_cell");
         const Json& deadlock = report.at("deadlock");
-        if (deadlock.contains("knot")) row.knot_cells = deadlock.at("knot").at("cells");
+        if (deadlock.contains("knot")) row.knot_cells = deadlock.at("knot").at("cells").size();
         if (report.contains("accuracy")) row.psnr = report.at("accuracy").at("psnr_db").dump();
         row.image_hash = report.at("hash").at("image");
         row.schedule_hash = report.at("hash").at("schedule");

@@ -107,6 +107,20 @@ TEST(Sweep, IsRepeatedFromTheConfigurationThatItWrote) {
     EXPECT_EQ(read_text(workshop.result("t.toml")), read_text(workshop.result("s.toml")));
 }
 
+TEST(Sweep, TakesTheConfigurationOfARun) {
+    const Workshop workshop;
+    EXPECT_EQ(
+        workshop.render(own_scene("cornell.nff"), {"--cells", "8x8", "--cost", "walk_step=9"}).exit_code, 0);
+    const Finished finished = workshop.run(
+        {"sweep", "--config", "results/a.toml", "--ray-store", "8,9", "-o", "results/s", "--quiet"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_EQ(lines_of(read_text(workshop.result("s.csv"))).size(), 3u);
+    const Json report = Json::parse(read_text(workshop.result("a.json")));
+    EXPECT_TRUE(
+        contains(read_text(workshop.result("s.csv")), report.at("hash").at("schedule").get<std::string>()))
+        << "M is 8 by default";
+}
+
 TEST(Sweep, WithDryRunSaysWhatItWouldRunAndWritesNothing) {
     const Workshop workshop;
     const Finished finished = workshop.run(synthetic({"--ray-store", "1..2", "--dry-run"}));
