@@ -176,7 +176,7 @@ TEST(DeadlockTb, RefusesWhatItCannotUnderstand) {
                                     "word",
                                     "--config missing.toml",
                                     "--config",
-                                    "-o missing/a",
+                                    "-o /dev/null/a",
                                     "--max-cycles -1"}) {
         const Finished finished = run_deadlock_tb(workshop, words);
         EXPECT_EQ(finished.exit_code, 1) << words;

@@ -246,7 +246,7 @@ TEST(LoadingTb, RefusesWhatItCannotUnderstand) {
                                       {"--random", "5", "--ray-store", "8"},
                                       {"--random", "5", "--cells", "0x4"},
                                       {"--random", "5", "--config", "missing.toml"},
-                                      {"--random", "5", "-o", "missing/a"},
+                                      {"--random", "5", "-o", "/dev/null/a"},
                                       {"--nonsense"}};
     for (const Words& words : wrong) {
         const Finished finished = workshop.run_program(RAYCELL_LOADING_TB, words);

@@ -278,7 +278,7 @@ TEST(Size, WrongScenesPlacesAndOptionsAreRefused) {
     const Words goal = {"--psnr", "30"};
     expect_refused(joined(goal, {"-o", "results/s"}), "no scene given");
     expect_refused(joined(goal, {"none.nff", "-o", "results/s"}), "none.nff");
-    expect_refused(joined(goal, {scene, "-o", "missing/s"}), "--output missing/s");
+    expect_refused(joined(goal, {scene, "-o", "/dev/null/s"}), "--output /dev/null/s");
     expect_refused(joined(goal, {scene, "-o", "results/s", "--depth", "0"}), "--depth: ");
     // Options that the search determines can't be given.
     expect_refused(joined(goal, {scene, "-o", "results/s", "--hit", "edge"}), "--hit");
