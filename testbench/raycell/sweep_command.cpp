@@ -153,7 +153,7 @@ int run(SweepOptions options, std::vector<std::string> words) {
     const auto already = std::size_t(
         std::count_if(runs.begin(), runs.end(), [](const SweepRun& each) { return each.done(); }));
     const bool all = make_runs(runs, options.jobs, options.keep, progress_of(options, already));
-    if (!options.quiet) end_progress();
+    if (!options.quiet && isatty(STDERR_FILENO)) end_progress();
     if (!all) {
         std::cerr << "raycell: interrupted: the same command goes on where it was\n";
         return exit_interrupted;

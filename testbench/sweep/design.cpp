@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "model/files/input_file.hpp"
@@ -240,8 +241,11 @@ std::vector<std::string> sweep_words_from_file(const std::string& path) {
         words.push_back("--" + key + "=" + value.str());
     };
     try {
-        for (const auto& [name, node] : toml::parse(text.str())) {
-            const std::string key(name.str());
+        const toml::table table = toml::parse(text.str());
+        std::map<std::size_t, std::string> keys;  // by line: a sweep's axes are in the order of its file
+        for (const auto& [name, node] : table) keys[node.source().begin.line] = std::string(name.str());
+        for (const auto& [line, key] : keys) {
+            const toml::node& node = *table.get(key);
             if (const toml::array* list = node.as_array()) {
                 for (const toml::node& item : *list) add(key, item);
             } else {
