@@ -52,8 +52,8 @@ def draw(out, cache, results, scene):
     from matplotlib import pyplot as plt  # needed only here
     figure, axes = plt.subplots(2, len(RUNGS), figsize=(3.1 * len(RUNGS), 6.6))
     for column, rung in enumerate(reversed(RUNGS)):
-        prefix = cache / f"{scene}.{rung}.host"
-        report = results[scene, rung, "host"]
+        prefix = cache / f"{scene}.{rung}.fixed"
+        report = results[scene, rung, "fixed"]
         top, bottom = axes[0][column], axes[1][column]
         top.imshow(plt.imread(f"{prefix}.png"), interpolation="nearest")
         top.set_title(f"{rung}: {report['accuracy']['psnr_db']:.1f} dB\n{report['voxels']['bits_each']:.0f} bits per voxel")
@@ -61,7 +61,7 @@ def draw(out, cache, results, scene):
         for axis in (top, bottom):
             axis.set_xticks([])
             axis.set_yticks([])
-    axes[0][0].set_ylabel(f"{scene}, 128x128 cells")
+    axes[0][0].set_ylabel(f"{scene}, 128x128 cells, words of 20 bits")
     axes[1][0].set_ylabel("difference from the truth, x8")
     figure.tight_layout()
     figure.savefig(out / "ladder.png", dpi=72)

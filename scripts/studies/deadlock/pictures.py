@@ -36,8 +36,8 @@ def stores_of(results, load):
                    for m, _ in results.line(load, networks, depth, mode)})
 
 
-def plot(axis, stores, line, value, **how):
-    points = [(stores.index(m), value(group)) for m, group in line]
+def plot(axis, stores, line, value, dodge=0, **how):
+    points = [(stores.index(m) + dodge, value(group)) for m, group in line]
     if points:
         axis.plot(*zip(*points), markersize=4, linewidth=1.4, **how)
 
@@ -54,15 +54,18 @@ def draw_locks(results, prefix):
         for axis, name in zip(line, networks):
             for place, depth in enumerate(depths):
                 for number, (mode, style) in enumerate(STYLES.items()):
-                    shift = 1.6 * (place - (len(depths) - 1) / 2) - 5 * number  # keeps equal lines apart
+                    # Side by side in x, so that each point's height is its value.
+                    lines = len(depths) * len(STYLES)
+                    dodge = 0.7 * ((number * len(depths) + place) / (lines - 1) - 0.5)
                     plot(axis, stores, results.line(load, name, depth, mode),
-                         lambda group: 100 * group.share(lambda row: not row.completed) + shift,
+                         lambda group: 100 * group.share(lambda row: not row.completed), dodge,
                          linestyle=style, color=DEPTH_COLOURS[place % len(DEPTH_COLOURS)], marker=MARKERS[place % 4],
                          fillstyle="full" if mode == NONE else "none")
             axis.set_title(f"{load} {cells}x{cells}, {name}")
             store_axis(axis, stores)
+            axis.set_xlim(-0.5, len(stores) - 0.5)
         line[0].set_ylabel("runs that did not end, %")
-        line[0].set_ylim(-10, 106)
+        line[0].set_ylim(-4, 104)
     handles = [Line2D([], [], color=DEPTH_COLOURS[i % 4], marker=MARKERS[i % 4], markersize=4,
                       label=f"buffers of {depth}") for i, depth in enumerate(depths)]
     handles += [Line2D([], [], color="black", linestyle=style, label=MODE_NAMES[mode])
