@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "cells/probes/save_file.hpp"
 #include "model/numbers/bits.hpp"
@@ -48,6 +49,10 @@ Head head_of(const Message& message) {
     return {};
 }
 
+std::string scope_of(const Cell& cell) {
+    return "cell_" + std::to_string(cell.x()) + "_" + std::to_string(cell.y());
+}
+
 std::string megabytes(double bytes) {
     char text[32];
     std::snprintf(text, sizeof text, "%.*f MB", bytes < 100e6 ? 1 : 0, bytes / 1e6);
@@ -76,6 +81,7 @@ void Probe::declare() {
     declared_ = true;
     vcd_.open_scope("raycell");
     phase_ = vcd_.add_word("phase", phase_names);
+    cycle_ = vcd_.add_number("cycle", 32);
     cells_.reserve(watched_.size());
     for (const Cell* cell : watched_) declare_cell(*cell);
     vcd_.close_scope();
@@ -91,7 +97,8 @@ Probe::UnitSignals Probe::declare_unit(const char* name, bool of_rays) {
     return unit;
 }
 
-void Probe::declare_buffer(CellSignals& cell, const Link& link, int index, const char* name) {
+void Probe::declare_buffer(CellSignals& cell, const Link& link, int index, const std::string& where,
+                           const char* name) {
     vcd_.open_scope(name);
     BufferSignals buffer{};
     buffer.link = &link;
@@ -102,6 +109,7 @@ void Probe::declare_buffer(CellSignals& cell, const Link& link, int index, const
     buffer.type = vcd_.add_word("type", type_names);
     buffer.ray = vcd_.add_ray("ray");
     buffer.stall = vcd_.add_word("stall", stall_names.data());
+    buffer.name = where + "." + name;
     cell.buffers.push_back(buffer);
     vcd_.close_scope();
 }
@@ -115,7 +123,8 @@ void Probe::declare_side(CellSignals& cell, int side) {
     for (int index = 0; index < classes.count; ++index) {
         // A message that comes in at one side runs towards the opposite side.
         if (!classes.used(index, horizontal, opposite(Side(side)))) continue;
-        declare_buffer(cell, *link, index, class_name(classes.networks, index));
+        declare_buffer(cell, *link, index, scope_of(*cell.cell) + "." + name_of(Side(side)),
+                       class_name(classes.networks, index));
     }
     vcd_.close_scope();
 }
@@ -123,12 +132,12 @@ void Probe::declare_side(CellSignals& cell, int side) {
 void Probe::declare_cell(const Cell& cell) {
     CellSignals& signals = cells_.emplace_back();
     signals.cell = &cell;
-    vcd_.open_scope("cell_" + std::to_string(cell.x()) + "_" + std::to_string(cell.y()));
+    vcd_.open_scope(scope_of(cell));
     for (int side = 0; side < side_count; ++side) declare_side(signals, side);
     const Link* load = cell.load_input();
     if (load && load != cell.input(Side::west)) {
         vcd_.open_scope("distributor");
-        declare_buffer(signals, *load, 0, "load");
+        declare_buffer(signals, *load, 0, scope_of(cell) + ".distributor", "load");
         vcd_.close_scope();
     }
     signals.traversal = declare_unit("traversal", true);
@@ -160,6 +169,7 @@ void Probe::declare_cell(const Cell& cell) {
 
 void Probe::sample_buffer(const Cell& cell, BufferSignals& buffer, Cycle now) {
     buffer.last_occupancy = buffer.link->occupancy(buffer.index);
+    buffer.quiet = buffer.quiet && buffer.last_occupancy == 0;
     vcd_.set(buffer.full, buffer.last_occupancy >= env_.machine.buffer_depth);
     vcd_.set(buffer.occupancy, std::uint64_t(buffer.last_occupancy));
     Head head = head_of(buffer.link->front(buffer.index));
@@ -205,6 +215,7 @@ void Probe::sample_cell(CellSignals& signals, Cycle now) {
 
 void Probe::sample_all(Cycle now, bool everything) {
     vcd_.set(phase_, std::uint64_t(env_.phase));
+    vcd_.set(cycle_, now);
     for (CellSignals& cell : cells_) {
         // A cell changes when it runs. Its buffers also change when a neighbour sends and when a message
         // becomes visible. (Room at an output that refused the cell wakes it.)
@@ -302,8 +313,23 @@ void Probe::look_at_size(Cycle now) {
 }
 
 std::string Probe::save_file(const std::string& name) const {
-    return gtkwave_save_file(vcd_.declarations(), name, vcd_.display_time(settings_.from),
-                             vcd_.display_time(1));
+    std::set<std::string> quiet;
+    for (const CellSignals& cell : cells_) {
+        for (const BufferSignals& buffer : cell.buffers) {
+            if (buffer.quiet) quiet.insert(buffer.name);
+        }
+    }
+    const bool marked = settings_.mark != never;
+    SaveFileView view;
+    view.cycle = vcd_.display_time(1);
+    view.from = vcd_.display_time(settings_.from);
+    if (marked) {
+        constexpr Cycle before = 100;  // cycles to the left of the marker
+        view.marker = std::int64_t(vcd_.display_time(settings_.mark));
+        view.from =
+            vcd_.display_time(std::max(settings_.from, settings_.mark - std::min(settings_.mark, before)));
+    }
+    return gtkwave_save_file(vcd_.declarations(), name, view, quiet);
 }
 
 }  // namespace raycell

@@ -14,6 +14,7 @@ struct ProbeSettings {
     Cycle from = 0;                    ///< first cycle of the window
     Cycle to = never;                  ///< last cycle of the window
     std::uint64_t limit = 1024000000;  ///< bytes of the dump
+    Cycle mark = never;                ///< where viewers open, with a marker; `never`: at the first cycle
 };
 
 /// Observes cells of one environment and writes a dump of their signals (docs/use/probes.md lists them). The
@@ -42,6 +43,8 @@ class Probe {
         const Link* link;
         int index;
         int last_occupancy;
+        std::string name;       ///< "cell_0_1.west.answer"
+        bool quiet = true;      ///< no message was in it so far
         bool on_wires = false;  ///< held only unseen messages: the first appears without a step
         Signal full, occupancy, type, ray, stall;
     };
@@ -63,7 +66,8 @@ class Probe {
     void declare();
     void declare_cell(const Cell& cell);
     void declare_side(CellSignals& cell, int side);
-    void declare_buffer(CellSignals& cell, const Link& link, int index, const char* name);
+    void declare_buffer(CellSignals& cell, const Link& link, int index, const std::string& where,
+                        const char* name);
     UnitSignals declare_unit(const char* name, bool of_rays);
     void begin(Cycle cycle);
     void sample_cell(CellSignals& cell, Cycle now);
@@ -81,6 +85,7 @@ class Probe {
     VcdWriter vcd_;
     std::vector<CellSignals> cells_;
     Signal phase_ = 0;
+    Signal cycle_ = 0;
     std::uint64_t look_at_ = 0;      ///< bytes of the dump at which its size is checked next
     std::uint64_t phase_bytes_ = 0;  ///< bytes of the dump when the phase began
     Phase last_phase_ = Phase::load;

@@ -19,17 +19,49 @@ constexpr unsigned collapsed = 0x1000;
 
 using Kind = VcdWriter::Declaration::Kind;
 
+/// A scope with its signals and the scopes in it.
+struct Scope {
+    std::string name;
+    std::vector<const VcdWriter::Declaration*> signals;
+    std::vector<Scope> scopes;
+};
+
+Scope tree_of(const std::vector<VcdWriter::Declaration>& declarations) {
+    Scope top;
+    std::vector<Scope*> path = {&top};
+    for (const VcdWriter::Declaration& d : declarations) {
+        if (d.kind == Kind::scope) {
+            path.back()->scopes.push_back({d.name, {}, {}});
+            path.push_back(&path.back()->scopes.back());
+        } else if (d.kind == Kind::end_of_scope) {
+            path.pop_back();
+        } else {
+            path.back()->signals.push_back(&d);
+        }
+    }
+    return top.scopes.empty() ? top : top.scopes.front();
+}
+
+/// Buffers stand in a scope for each side, and in that of the distributor.
+bool holds_buffers(const Scope& scope) {
+    for (const char* side : {"east", "south", "west", "north", "distributor"}) {
+        if (scope.name == side) return true;
+    }
+    return false;
+}
+
 class Writer {
   public:
-    explicit Writer(std::string text) : text_(std::move(text)) {}
+    Writer(std::string text, const std::set<std::string>& quiet) : text_(std::move(text)), quiet_(quiet) {}
 
-    void declare(const VcdWriter::Declaration& d) {
-        if (d.kind == Kind::scope) {
-            open(d.name);
-        } else if (d.kind == Kind::end_of_scope) {
-            close();
-        } else {
-            signal(d);
+    /// The root's signals, then a group for each cell, the first of them open.
+    void write(const Scope& root) {
+        path_ = root.name;
+        for (const auto* d : root.signals) signal(*d, path_);
+        bool shut = false;
+        for (const Scope& cell : root.scopes) {
+            write_cell(cell, shut);
+            shut = true;
         }
     }
     const std::string& text() const { return text_; }
@@ -42,51 +74,84 @@ class Writer {
         std::snprintf(digits, sizeof digits, "@%x\n", value);
         text_ += digits;
     }
-    void open(const std::string& name) {
-        scopes_.push_back(name);
-        if (scopes_.size() == 1) return;  // the root
-        if (scopes_.size() == 2) ++groups_;
-        flags(group_begin | blank | (shut() ? closed : 0));
+    void open(const std::string& name, bool shut = false) {
+        flags(group_begin | blank | (shut ? closed : 0));
         text_ += "-" + name + "\n";
     }
-    void close() {
-        if (scopes_.size() > 1) {
-            flags(group_end | blank | (shut() ? closed | collapsed : 0));
-            text_ += "-" + scopes_.back() + "\n";
-        }
-        scopes_.pop_back();
+    void close(const std::string& name, bool shut = false) {
+        flags(group_end | blank | (shut ? closed | collapsed : 0));
+        text_ += "-" + name + "\n";
     }
-    /// Whether the current group is closed at first: the user opens it.
-    bool shut() const { return groups_ > 1 && scopes_.size() == 2; }
 
-    void signal(const VcdWriter::Declaration& d) {
+    void write_cell(const Scope& cell, bool shut) {
+        open(cell.name, shut);
+        const std::string path = path_ + "." + cell.name;
+        for (const Scope& scope : cell.scopes) {
+            if (!holds_buffers(scope)) write_scope(scope, path);
+        }
+        write_buffers(cell, path, false);
+        bool any = false;
+        for (const Scope& side : cell.scopes) {
+            for (const Scope& buffer : side.scopes)
+                any = any || (holds_buffers(side) && is_quiet(cell, side, buffer));
+        }
+        if (any) {
+            open("quiet buffers", true);
+            write_buffers(cell, path, true);
+            close("quiet buffers", true);
+        }
+        close(cell.name, shut);
+    }
+    bool is_quiet(const Scope& cell, const Scope& side, const Scope& buffer) const {
+        return quiet_.count(cell.name + "." + side.name + "." + buffer.name) > 0;
+    }
+    void write_buffers(const Scope& cell, const std::string& path, bool quiet) {
+        for (const Scope& side : cell.scopes) {
+            if (!holds_buffers(side)) continue;
+            for (const Scope& buffer : side.scopes) {
+                if (is_quiet(cell, side, buffer) != quiet) continue;
+                open(side.name + " " + buffer.name);
+                for (const auto* d : buffer.signals) signal(*d, path + "." + side.name + "." + buffer.name);
+                close(side.name + " " + buffer.name);
+            }
+        }
+    }
+    void write_scope(const Scope& scope, const std::string& path) {
+        open(scope.name);
+        for (const auto* d : scope.signals) signal(*d, path + "." + scope.name);
+        for (const Scope& inner : scope.scopes) write_scope(inner, path + "." + scope.name);
+        close(scope.name);
+    }
+
+    void signal(const VcdWriter::Declaration& d, const std::string& path) {
         flags(d.kind == Kind::flag     ? binary | right
               : d.kind == Kind::number ? decimal | right
                                        : ascii | right);
-        std::string path;
-        for (const std::string& scope : scopes_) path += scope + ".";
-        path += d.name;
-        if (d.bits > 1) path += "[" + std::to_string(d.bits - 1) + ":0]";
-        text_ += path + "\n";
+        text_ += path + "." + d.name;
+        if (d.bits > 1) text_ += "[" + std::to_string(d.bits - 1) + ":0]";
+        text_ += "\n";
     }
 
     std::string text_;
-    std::vector<std::string> scopes_;
+    const std::set<std::string>& quiet_;
+    std::string path_;
     unsigned flags_ = 0;
-    int groups_ = 0;
 };
 
 }  // namespace
 
 std::string gtkwave_save_file(const std::vector<VcdWriter::Declaration>& declarations,
-                              const std::string& name, std::uint64_t from, std::uint64_t cycle) {
+                              const std::string& name, const SaveFileView& view,
+                              const std::set<std::string>& quiet) {
     // GTKWave's zoom: 200 pixels show 2^-zoom units of time.
     constexpr double pixels_per_cycle = 8;
-    const double zoom = -std::log2(double(cycle) * 200 / pixels_per_cycle);
+    const double zoom = -std::log2(double(view.cycle) * 200 / pixels_per_cycle);
     Writer writer("[*] raycell\n[dumpfile] \"" + name + ".vcd\"\n[savefile] \"" + name +
-                  ".gtkw\"\n[timestart] " + std::to_string(from) + "\n[size] 1600 900\n[pos] -1 -1\n*" +
-                  std::to_string(zoom) + " -1\n[sst_expanded] 0\n[signals_width] 260\n");
-    for (const auto& declaration : declarations) writer.declare(declaration);
+                      ".gtkw\"\n[timestart] " + std::to_string(view.from) +
+                      "\n[size] 1600 900\n[pos] -1 -1\n*" + std::to_string(zoom) + " " +
+                      std::to_string(view.marker) + "\n[sst_expanded] 0\n[signals_width] 260\n",
+                  quiet);
+    writer.write(tree_of(declarations));
     return writer.text();
 }
 

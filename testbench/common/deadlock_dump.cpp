@@ -84,8 +84,9 @@ nlohmann::ordered_json probing(nlohmann::ordered_json config, const RenderOption
     const Cycle last = Cycle(options.probes.last);
     config["probe"] = cells;
     config["window"] = std::to_string(where.formed > last ? where.formed - last : 0) + ":";
+    config["vcd-mark"] = where.formed;
     config["vcd-on-deadlock"] = false;
-    config["truth"] = false;
+    if (config.contains("truth")) config["truth"] = false;
     config["quiet"] = true;
     config["output"] = prefix;
     if (!array.empty()) {  // saved by the first run; no need to load again
@@ -114,15 +115,18 @@ DeadlockedCells deadlocked_cells(const RunResult& result, Machine& machine) {
     return where;
 }
 
-void dump_deadlock(const RenderOptions& options, nlohmann::ordered_json config, const DeadlockedCells& where,
-                   std::uint64_t schedule_hash, OutputSet& outputs) {
+void dump_deadlock(const std::vector<std::string>& program, const RenderOptions& options,
+                   nlohmann::ordered_json config, const DeadlockedCells& where, std::uint64_t schedule_hash,
+                   OutputSet& outputs) {
     const ScratchFolder folder(options.prefix);
     const std::string prefix = (folder.path() / fs::path(options.prefix).filename()).string();
     const std::string file = (folder.path() / "configuration").string();
     const std::string errors = (folder.path() / "errors").string();
     const std::string array = options.save_array.empty() ? "" : outputs.partial(options.save_array);
     write_text(file, to_toml(probing(std::move(config), options, where, prefix, array)));
-    const int code = run_again({"raycell", "render", "--config", file}, errors);
+    std::vector<std::string> words = program;
+    words.insert(words.end(), {"--config", file});
+    const int code = run_again(std::move(words), errors);
     const std::string said = read_text(errors);
     if (code != exit_stuck) {
         throw std::runtime_error("--vcd-on-deadlock: the second run ended with exit code " +

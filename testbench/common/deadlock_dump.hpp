@@ -24,7 +24,8 @@ DeadlockedCells deadlocked_cells(const RunResult& result, Machine& machine);
 /// PREFIX.vcd and PREFIX.gtkw. Which cells lock is known only afterwards, and keeping the last cycles of all
 /// cells would cost every run. Runs are deterministic; the schedule's hash checks that the second equals the
 /// first. Throws std::runtime_error if it can't be run, std::logic_error if it differs, Interrupted.
-void dump_deadlock(const RenderOptions& options, nlohmann::ordered_json config, const DeadlockedCells& where,
-                   std::uint64_t schedule_hash, OutputSet& outputs);
+void dump_deadlock(const std::vector<std::string>& program, const RenderOptions& options,
+                   nlohmann::ordered_json config, const DeadlockedCells& where, std::uint64_t schedule_hash,
+                   OutputSet& outputs);
 
 }  // namespace raycell

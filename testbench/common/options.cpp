@@ -400,7 +400,7 @@ void add_array_options(OptionTable& table, RenderOptions& options) {
                "start with an array that --save-array kept, instead of loading it again");
 }
 
-void add_probe_options(OptionTable& table, RenderOptions& options) {
+void add_waveform_options(OptionTable& table, RenderOptions& options) {
     table.group("Looking inside");
     ProbeOptions& p = options.probes;
     table.cells("probe", p.cells,
@@ -410,8 +410,14 @@ void add_probe_options(OptionTable& table, RenderOptions& options) {
                "if the run deadlocks: waveforms of the knot's cells, by running once more");
     table.number("vcd-last", p.last, std::int64_t(0), std::int64_t(1) << 62,
                  "cycles before the deadlock formed from which on --vcd-on-deadlock shows it");
+    table.number("vcd-mark", p.mark, std::int64_t(-1), std::int64_t(1) << 62,
+                 "cycle with GTKWave's marker, at which the view opens; -1: the first one shown");
     table.number("vcd-limit", p.limit_mb, std::int64_t(1), std::int64_t(1) << 40,
                  "size at which a dump ends, MB; the run goes on");
+}
+
+void add_probe_options(OptionTable& table, RenderOptions& options) {
+    add_waveform_options(table, options);
     table.cells("golden", options.golden,
                 "messages into and out of these cells, for cell_tb and the test of a cell of your own: "
                 "PREFIX.golden_X_Y.txt; may come several times");

@@ -40,6 +40,7 @@ struct ProbeOptions {
     CycleWindow window;
     bool on_deadlock = false;      ///< only the knot's cells, if the run deadlocks
     std::int64_t last = 2000;      ///< cycles before the deadlock formed
+    std::int64_t mark = -1;        ///< cycle at which the view opens, with a marker; -1: the window's first
     std::int64_t limit_mb = 1024;  ///< largest dump, 10^6 bytes
 };
 
@@ -141,6 +142,8 @@ void add_machine_options(OptionTable& table, RenderOptions& options);
 void add_render_options(OptionTable& table, RenderOptions& options);
 /// Loaded arrays as files.
 void add_array_options(OptionTable& table, RenderOptions& options);
+/// Waveforms of cells.
+void add_waveform_options(OptionTable& table, RenderOptions& options);
 /// Waveforms and golden vectors of cells.
 void add_probe_options(OptionTable& table, RenderOptions& options);
 

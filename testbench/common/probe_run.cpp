@@ -10,7 +10,8 @@ namespace raycell {
 namespace {
 
 ProbeSettings settings_of(const ProbeOptions& options) {
-    return {options.window.from, options.window.to, std::uint64_t(options.limit_mb) * 1000000};
+    return {options.window.from, options.window.to, std::uint64_t(options.limit_mb) * 1000000,
+            options.mark < 0 ? never : Cycle(options.mark)};
 }
 
 std::string file_name(const std::string& prefix) { return std::filesystem::path(prefix).filename().string(); }
@@ -28,6 +29,8 @@ void check_probes(const RenderOptions& options) {
         throw UsageError("--vcd-on-deadlock: it finds its cells itself; expected no --probe beside it");
     }
     if (p.cells.empty() && !whole_run) throw UsageError("--window: expected --probe beside it");
+    if (options.prefix.empty() && (!p.cells.empty() || p.on_deadlock))
+        throw UsageError("--output: expected one, for the files of --probe and --vcd-on-deadlock");
     check_inside("--probe", p.cells, options.picture);
 }
 

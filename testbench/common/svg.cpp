@@ -19,8 +19,8 @@ std::string escaped(const std::string& text) {
 
 void begin_svg(std::ostream& svg, double width, double height, const std::string& style) {
     svg << "<svg xmlns='http://www.w3.org/2000/svg' width='" << width << "' height='" << height
-        << "' font-family='sans-serif' font-size='12'>\n<style>" << style
-        << "</style>\n<rect width='" << width << "' height='" << height << "' fill='#fff'/>\n";
+        << "' font-family='sans-serif' font-size='12'>\n<style>" << style << "</style>\n<rect width='"
+        << width << "' height='" << height << "' fill='#fff'/>\n";
 }
 
 void put_text(std::ostream& svg, double x, double y, const std::string& text, const char* anchor) {

@@ -6,9 +6,9 @@ void add_traffic_options(OptionTable& table, TrafficOptions& options) {
     PictureSettings& p = options.run.picture;
     TrafficSettings& t = options.traffic;
     table.group("Results");
-    table.text(
-        "output", options.run.prefix, "PREFIX",
-        "writes PREFIX.json, PREFIX.toml and, of a run that stopped, PREFIX.waits.json; empty: no files");
+    table.text("output", options.run.prefix, "PREFIX",
+               "writes PREFIX.json, PREFIX.toml, PREFIX.cells.csv and, of a run that stopped, "
+               "PREFIX.waits.json and PREFIX.knot.svg; empty: no files");
     table.group("Traffic");
     table.size("cells", p.width, p.height, "size of the array; each cell sends a primary ray");
     table.number("hit-probability", t.hit_probability, 0.0, 1.0,
@@ -30,6 +30,7 @@ void add_traffic_options(OptionTable& table, TrafficOptions& options) {
                  "shadow rays of each hit; with them the last generation has to wait too");
     add_communication_options(table, options.run.machine);
     add_granularity_options(table, options.run);
+    add_waveform_options(table, options.run);
     table.group("Traffic");
     table.number("seed", t.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1,
                  "of every draw, and of the back-off's jitter");

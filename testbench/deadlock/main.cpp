@@ -6,12 +6,15 @@
 
 #include "cells/clock/wall_time.hpp"
 #include "model/tracing/traffic.hpp"
+#include "testbench/common/cells_csv.hpp"
 #include "testbench/common/configuration.hpp"
+#include "testbench/common/deadlock_dump.hpp"
 #include "testbench/common/entry.hpp"
 #include "testbench/common/interruptible.hpp"
 #include "testbench/common/knot_report.hpp"
 #include "testbench/common/machine_run.hpp"
 #include "testbench/common/new_file.hpp"
+#include "testbench/common/probe_run.hpp"
 #include "testbench/common/report_json.hpp"
 #include "testbench/common/scene_input.hpp"
 #include "testbench/common/traffic_options.hpp"
@@ -50,15 +53,49 @@ void summarise(const Json& json, std::uint64_t seed) {
               << json["messages"]["rays"]["sent"] << " sent\n";
 }
 
+/// The files of a run that has ended, published together. False if a signal cut short the waveforms.
+bool write_results(const RenderOptions& o, Machine& machine, const RunResult& result, const Json& json,
+                   ProbeRun* probes, OutputSet& outputs) {
+    std::string cells = cells_csv_header();
+    for (const std::string& row : cells_csv_rows(machine, result)) cells += row;
+    outputs.write(".toml", to_toml(json["config"]));
+    outputs.write(".cells.csv", cells);
+    outputs.write_if(!result.waits.nodes().empty(), ".waits.json",
+                     [&] { return to_text(waits_json(result)); });
+    outputs.write_if(result.waits.deadlocked(), ".knot.svg",
+                     [&] { return knot_svg(result, o.picture.width, o.picture.height); });
+    outputs.write(".json", to_text(json));
+    if (probes) probes->write(outputs);
+    bool whole = true;
+    if (o.probes.on_deadlock && result.verdict == Verdict::deadlock) {
+        try {
+            dump_deadlock({"deadlock_tb"}, o, json["config"], deadlocked_cells(result, machine),
+                          result.schedule_hash, outputs);
+        } catch (const Interrupted&) {
+            std::cerr << "deadlock_tb: interrupted: no waveforms\n";
+            for (const char* suffix : {".vcd", ".gtkw"}) outputs.write_if(false, suffix, {});
+            whole = false;
+        }
+    }
+    outputs.publish();
+    return whole;
+}
+
+/// Announces all files; throws UsageError for places that are refused.
+void announce(const RenderOptions& o, OutputSet& outputs) {
+    if (o.prefix.empty()) return;
+    check_place("--output", o.prefix);
+    outputs.announce({".toml", ".cells.csv", ".waits.json", ".knot.svg", ".json"});
+    if (!o.probes.cells.empty() || o.probes.on_deadlock) outputs.announce({".vcd", ".gtkw"});
+    spare_inputs(o, outputs);
+}
+
 int run(TrafficOptions& options, const OptionTable& table) {
     RenderOptions& o = options.run;
-    OutputSet outputs(o.prefix);
-    if (!o.prefix.empty()) {
-        check_place("--output", o.prefix);
-        outputs.announce({".toml", ".waits.json", ".json"});
-        spare_inputs(o, outputs);
-    }
     check_granularity(o);
+    check_probes(o);
+    OutputSet outputs(o.prefix);
+    announce(o, outputs);
     check_memory(o);
     const PictureSettings picture = traffic_picture(o.picture.width, o.picture.height, o.picture.max_depth);
     o.machine.seed = options.traffic.seed;
@@ -74,11 +111,14 @@ int run(TrafficOptions& options, const OptionTable& table) {
     static Machine* const machine =
         new Machine("machine", scene, picture, o.machine, nullptr, &traffic, granularity_of(o));
     const double wall_build = seconds_since(built);
+    std::unique_ptr<ProbeRun> probes;
+    if (!o.probes.cells.empty()) probes = std::make_unique<ProbeRun>(o, *machine, outputs);
     const bool progress = shows_progress(o);
     const Interruptible interruptible(*machine);
     const RunResult result =
         machine->run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
+    if (probes) probes->finish();
 
     Json json = report(result, scene, picture, o.machine);
     const bool equal = equals(result.picture, golden);
@@ -88,17 +128,12 @@ int run(TrafficOptions& options, const OptionTable& table) {
                                      {"build", wall_build},
                                      {"load", result.wall_load},
                                      {"trace", result.wall_trace}};
-    if (!o.prefix.empty()) {
-        outputs.write(".toml", to_toml(json["config"]));
-        outputs.write_if(!result.waits.nodes().empty(), ".waits.json",
-                         [&] { return to_text(waits_json(result)); });
-        outputs.write(".json", to_text(json));
-        outputs.publish();
-    }
+    const bool whole = o.prefix.empty() || write_results(o, *machine, result, json, probes.get(), outputs);
     explain(result, bound, "deadlock_tb");
     if (!o.quiet) summarise(json, options.traffic.seed);
     if (!equal) std::cerr << "deadlock_tb: the picture is not that of the untimed machine\n";
-    return equal ? exit_code(result.verdict) : exit_comparison;
+    if (!equal) return exit_comparison;
+    return whole ? exit_code(result.verdict) : int(exit_interrupted);
 }
 
 /// The arguments of --config followed by those of the command line, which so take precedence.

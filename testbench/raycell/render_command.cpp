@@ -282,7 +282,8 @@ bool write_results(const RenderOptions& options, const CellScene& scene, const R
     if (run.probes) run.probes->write(outputs);
     if (!run.deadlocked.cells.empty()) {
         unless_interrupted("no waveforms", {".vcd", ".gtkw"}, [&] {
-            dump_deadlock(options, config, run.deadlocked, result.schedule_hash, outputs);
+            dump_deadlock({"raycell", "render"}, options, config, run.deadlocked, result.schedule_hash,
+                          outputs);
         });
     }
     outputs.publish();

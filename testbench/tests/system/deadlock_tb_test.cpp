@@ -28,15 +28,49 @@ Json report(const Workshop& workshop, const std::string& arguments, int exit_cod
     const Finished finished = run_deadlock_tb(workshop, arguments + " --quiet -o results/a");
     EXPECT_EQ(finished.exit_code, exit_code) << finished.err.substr(0, 2000);
     EXPECT_EQ(finished.out, "") << "--quiet";
-    std::vector<std::string> files{"a.json", "a.toml"};
-    if (exit_code == 3 || exit_code == 4) files.push_back("a.waits.json");
-    EXPECT_EQ(workshop.results(), files);
     if (!fs::exists(workshop.result("a.json"))) return {};
     Json json = Json::parse(read_text(workshop.result("a.json")));
+    std::vector<std::string> files{"a.cells.csv", "a.json"};
+    if (json.at("deadlock").contains("knot")) files.push_back("a.knot.svg");
+    files.push_back("a.toml");
+    if (exit_code == 3 || exit_code == 4) files.push_back("a.waits.json");
+    EXPECT_EQ(workshop.results(), files);
     EXPECT_TRUE(json.at("equals_untimed").get<bool>());
     const Json& rays = json.at("messages").at("rays");
     EXPECT_LE(rays.at("answered").get<int>() + rays.at("destroyed").get<int>(), rays.at("sent").get<int>());
     return json;
+}
+
+TEST(DeadlockTb, ShowsTheCellsOfADeadlockAsWaveformsThatOpenAtIt) {
+    const Workshop workshop;
+    const Finished finished =
+        run_deadlock_tb(workshop, "--networks shared --cells 16x16 --vcd-on-deadlock --quiet -o results/a");
+    EXPECT_EQ(finished.exit_code, 3) << finished.err;
+    const Json report = Json::parse(read_text(workshop.result("a.json")));
+    const std::string vcd = read_text(workshop.result("a.vcd"));
+    const std::string save = read_text(workshop.result("a.gtkw"));
+    const Json& cell = report.at("deadlock").at("knot").at("cells").at(0);
+    EXPECT_TRUE(contains(vcd, "$scope module cell_" + cell.at(0).dump() + "_" + cell.at(1).dump())) << cell;
+    EXPECT_TRUE(contains(vcd, " cycle "));
+    // A cycle lasts 50 ns; the save file's line of the zoom ends in the marker's time.
+    const std::uint64_t formed = report.at("deadlock").at("knot").at("formed");
+    EXPECT_TRUE(contains(save, " " + std::to_string(50 * formed) + "\n[sst_expanded]"))
+        << save.substr(0, 300);
+    const auto units = save.find("-traversal");
+    const auto buffers = save.find("-west all");
+    const auto quiet = save.find("-quiet buffers");
+    EXPECT_TRUE(units < buffers) << save.substr(0, 2000);
+    EXPECT_TRUE(quiet == std::string::npos || buffers < quiet);
+}
+
+TEST(DeadlockTb, ProbesCellsAsRenderDoes) {
+    const Workshop workshop;
+    const Finished finished = run_deadlock_tb(
+        workshop, "--cells 8x8 --probe 3,4 --window 0:500 --vcd-mark 100 --quiet -o results/a");
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_TRUE(contains(read_text(workshop.result("a.vcd")), "$scope module cell_3_4"));
+    EXPECT_TRUE(contains(read_text(workshop.result("a.gtkw")), " 5000\n[sst_expanded]"));
+    EXPECT_EQ(run_deadlock_tb(workshop, "--cells 8x8 --probe 3,4").exit_code, 1) << "no place for the files";
 }
 
 TEST(DeadlockTb, CompletesByDefaultAndSaysSo) {
