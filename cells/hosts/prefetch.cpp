@@ -97,12 +97,14 @@ void Prefetch::messages(const Cell& cell) const {
 }
 
 void Prefetch::outputs(const Cell& cell) const {
-    const std::uint32_t decided = (cell.decided_ | cell.bit_in_test()) & ~cell.router_.parked();
-    for (std::uint32_t rays = decided; rays; rays &= rays - 1) {
-        const RayPacket* packet = cell.packet_at(std::size_t(__builtin_ctz(rays)));
+    const auto output_of = [&](const RayPacket* packet) {
         if (packet && packet->need.kind == Need::Kind::output)
             output(cell, packet->need.side, packet->need.index);
-    }
+    };
+    output_of(cell.traversal_.packet());  // most often its test is over in this step
+    const std::uint32_t decided = cell.decided_ & ~cell.router_.parked();
+    for (std::uint32_t rays = decided; rays; rays &= rays - 1)
+        output_of(cell.packet_at(std::size_t(__builtin_ctz(rays))));
     for (std::uint32_t sides = cell.answers_to_move(); sides; sides &= sides - 1) {
         const auto from = std::size_t(__builtin_ctz(sides));
         const Answer* answer = cell.inputs_.answer(from, cell.env_.scheduler.now());
