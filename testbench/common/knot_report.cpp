@@ -205,10 +205,13 @@ std::string knot_svg(const RunResult& result, int width, int height) {
         draw_lines(svg, panel);
         for (const auto& each : graph.knots()) draw_edges(svg, panel, graph, each);
     }
+    put_text(svg, all.origin.x, 34,
+             "The array, " + std::to_string(width) + "x" + std::to_string(height) +
+                 " cells: x to the right, y down");
     put_text(svg, near.origin.x, 34,
              "Cells " + std::to_string(near.x0) + ".." + std::to_string(near.x1) + ", " +
                  std::to_string(near.y0) + ".." + std::to_string(near.y1) +
-                 ": the oldest knot, what waits for what");
+                 ": the oldest knot; a dot holds a message, an arrow leads to what it waits for");
     for (std::size_t i = 0; i < lines; ++i) {
         const Node& node = graph.nodes()[knot[i]];
         put_text(svg, margin, bottom + 16 * double(i + 1),
