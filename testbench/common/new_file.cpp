@@ -66,8 +66,15 @@ NewFile::~NewFile() {
 
 void NewFile::close() {
     if (!file_) return;
-    const bool written = std::fflush(file_) == 0 && !std::ferror(file_);
-    const int error = errno;
+    errno = 0;
+    bool written = std::fflush(file_) == 0;
+    if (written && std::ferror(file_)) {
+        // An earlier write failed and its reason is lost. One more byte fails for the same reason.
+        written = false;
+        std::fputc(0, file_);
+        std::fflush(file_);
+    }
+    const int error = errno != 0 ? errno : EIO;
     const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
     if (!written || !closed) fail("write", path_, reason_of(written ? errno : error));
 }
