@@ -28,6 +28,9 @@ void check_probes(const RenderOptions& options) {
     if (p.on_deadlock && !p.cells.empty()) {
         throw UsageError("--vcd-on-deadlock: it finds its cells itself; expected no --probe beside it");
     }
+    if (p.on_deadlock && p.mark >= 0)
+        throw UsageError(
+            "--vcd-mark: --vcd-on-deadlock marks the cycle in which the knot formed; expected one of them");
     if (p.cells.empty() && !whole_run) throw UsageError("--window: expected --probe beside it");
     if (options.prefix.empty() && (!p.cells.empty() || p.on_deadlock))
         throw UsageError("--output: expected one, for the files of --probe and --vcd-on-deadlock");

@@ -86,22 +86,32 @@ void draw_frame(std::ostringstream& svg, const Panel& panel, const std::string& 
         put_text(svg, panel.x(i, 0, 1), top + panel_height + 18, panel.values[i], "middle");
 }
 
+/// Beyond the colours, lines are dashed.
+const char* dashes(std::size_t series) {
+    return series / colours.size() == 0   ? ""
+           : series / colours.size() == 1 ? " stroke-dasharray='6 3'"
+                                          : " stroke-dasharray='2 3'";
+}
+
 template <typename Value>
 void draw_series(std::ostringstream& svg, const Panel& panel, const std::vector<Series>& all,
                  const Value& value) {
     for (std::size_t s = 0; s < all.size(); ++s) {
         const char* colour = colours[s % colours.size()];
         std::ostringstream dots;
-        svg << "<polyline class='line' stroke='" << colour << "' points='";
+        std::ostringstream line;
         for (std::size_t i = 0; i < all[s].at.size(); ++i) {
             double y = 0;
             if (!all[s].at[i] || !value(*all[s].at[i], y)) continue;
-            svg << panel.x(i, s, all.size()) << ',' << panel.y(y) << ' ';
+            line << panel.x(i, s, all.size()) << ',' << panel.y(y) << ' ';
             dots << "<circle cx='" << panel.x(i, s, all.size()) << "' cy='" << panel.y(y) << "' r='4' fill='"
                  << colour << "'><title>" << escaped(all[s].name + ": " + panel.values[i] + ": ") << y
                  << "</title></circle>\n";
         }
-        svg << "'/>\n" << dots.str();
+        if (line.str().empty()) continue;
+        svg << "<polyline class='line' stroke='" << colour << "'" << dashes(s) << " points='" << line.str()
+            << "'/>\n"
+            << dots.str();
     }
 }
 
@@ -158,8 +168,8 @@ std::string sweep_chart(const SweepDesign& design, const std::vector<SweepRow>& 
     draw_series(svg, cycles, all, cycles_of_safe);
     for (std::size_t s = 0; named && s < all.size(); ++s) {
         const double y = top + panel_height + 60 + 18 * double(s);
-        svg << "<rect x='" << left << "' y='" << y - 10 << "' width='12' height='12' fill='"
-            << colours[s % colours.size()] << "'/>\n";
+        svg << "<line x1='" << left - 10 << "' x2='" << left + 14 << "' y1='" << y - 4 << "' y2='" << y - 4
+            << "' stroke='" << colours[s % colours.size()] << "' stroke-width='3'" << dashes(s) << "/>\n";
         put_text(svg, left + 20, y, all[s].name, "start");
     }
     svg << "</svg>\n";

@@ -53,9 +53,10 @@ std::string safe_table(const SweepDesign& design, const std::vector<SweepMachine
     }
     std::vector<std::string> names;
     for (const std::size_t axis : others) names.push_back(design.axes[axis].option);
-    for (const char* name : {"smallest safe M", "cycles (median)", "bits a cell"}) names.emplace_back(name);
+    for (const char* name : {"smallest M that ended", "cycles (median)", "bits a cell"})
+        names.emplace_back(name);
     std::string text =
-        "\nThe smallest `--ray-store` (M) from which on every machine of the sweep ends:\n\n" + head(names);
+        "\nThe smallest `--ray-store` (M) from which on every run of this sweep ended:\n\n" + head(names);
     for (const auto& key : order) {
         std::vector<const SweepMachine*>& each = lines[key];
         std::stable_sort(each.begin(), each.end(), [&](const SweepMachine* a, const SweepMachine* b) {
@@ -100,6 +101,7 @@ SweepRow row_of(const SweepPoint& point, const Json& report) {
         row.register_bits = bits.at("registers").at("total");
         row.voxel_bits = report.at("voxels").at("max_bits_per_cell");
         const Json& deadlock = report.at("deadlock");
+        row.certain = deadlock.at("bound").at("met");
         if (deadlock.contains("knot")) row.knot_cells = deadlock.at("knot").at("cells").size();
         if (report.contains("accuracy")) row.psnr = report.at("accuracy").at("psnr_db").dump();
         row.image_hash = report.at("hash").at("image");
@@ -117,15 +119,16 @@ std::string sweep_csv(const SweepDesign& design, const std::vector<SweepRow>& ro
     std::ostringstream csv;
     for (const std::size_t axis : design.varying()) csv << design.axes[axis].option << ',';
     csv << "verdict,completed_share,load_cycles,cycles,rays_sent,postponed,ray_store_peak,ray_store_mean,"
-           "buffer_bits,ray_store_bits,register_bits,voxel_bits,cell_bits,knot_cells,psnr_db,image_hash,"
+           "buffer_bits,ray_store_bits,register_bits,voxel_bits,cell_bits,certain,knot_cells,psnr_db,image_"
+           "hash,"
            "schedule_hash\n";
     for (const SweepRow& row : rows) {
         for (const std::size_t axis : design.varying()) csv << quoted(row.point.values[axis]) << ',';
         csv << row.verdict << ',' << row.completed << ',' << row.load_cycles << ',' << row.cycles << ','
             << row.rays_sent << ',' << row.postponed << ',' << row.ray_store_peak << ',' << row.ray_store_mean
             << ',' << row.buffer_bits << ',' << row.ray_store_bits << ',' << row.register_bits << ','
-            << row.voxel_bits << ',' << row.cell_bits() << ',' << row.knot_cells << ',' << row.psnr << ','
-            << row.image_hash << ',' << row.schedule_hash << '\n';
+            << row.voxel_bits << ',' << row.cell_bits() << ',' << row.certain << ',' << row.knot_cells << ','
+            << row.psnr << ',' << row.image_hash << ',' << row.schedule_hash << '\n';
     }
     return csv.str();
 }
@@ -181,7 +184,7 @@ std::string sweep_table(const SweepDesign& design, const std::vector<SweepRow>& 
         std::any_of(rows.begin(), rows.end(), [](const SweepRow& row) { return !row.psnr.empty(); });
     std::vector<std::string> names;
     for (const std::size_t axis : axes) names.push_back(design.axes[axis].option);
-    for (const char* name : {"verdict", "cycles (median)", "postponed", "ray store, peak"})
+    for (const char* name : {"verdict", "certain to end", "cycles (median)", "postponed", "ray store, peak"})
         names.emplace_back(name);
     if (truth) names.emplace_back("dB");
     for (const char* name :
@@ -198,7 +201,8 @@ std::string sweep_table(const SweepDesign& design, const std::vector<SweepRow>& 
         }
         std::vector<std::string> cells;
         for (const std::size_t axis : axes) cells.push_back(first.point.values[axis]);
-        cells.insert(cells.end(), {machine.verdicts(), machine.cycles() ? grouped(*machine.cycles()) : "",
+        cells.insert(cells.end(), {machine.verdicts(), first.certain ? "yes" : "no",
+                                   machine.cycles() ? grouped(*machine.cycles()) : "",
                                    grouped(postponed / machine.runs.size()), std::to_string(peak)});
         if (truth) cells.push_back(first.psnr.substr(0, first.psnr.find('.') + 3));
         for (const std::string& bits : bits_of(first)) cells.push_back(bits);

@@ -26,6 +26,7 @@ struct SweepRow {
     std::uint64_t register_bits = 0;
     std::uint64_t voxel_bits = 0;  ///< of the fullest cell
     std::uint64_t cell_bits() const { return buffer_bits + ray_store_bits + register_bits + voxel_bits; }
+    bool certain = false;  ///< proved to end in any scene, not only seen to
     std::uint64_t knot_cells = 0;
     std::string psnr;  ///< dB, with --truth; else empty
     std::string image_hash;
