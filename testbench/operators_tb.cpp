@@ -12,6 +12,7 @@
 
 #include "model/numbers/operators.hpp"
 #include "model/settings/costs.hpp"
+#include "testbench/common/version.hpp"
 
 namespace {
 
@@ -181,6 +182,7 @@ const char* const help =
     "b^n has two tables of that many entries, 1/sqrt(x) half of them over 1 to 2 and half over 2 to 4.\n"
     "schlick divides by 1/x (newton, 64 entries): its cycles are in, its table is not.\n"
     "  --word-bits N  length of a word, 8 to 32 (default 20)\n"
+    "  --version      what the program was built from\n"
     "  --help         this text\n";
 
 int word_bits_in(const std::string& text) {
@@ -200,8 +202,13 @@ void run(const std::vector<std::string>& arguments) {
             std::printf("%s", help);
             return;
         }
+        if (arguments[i] == "--version") {
+            std::printf("operators_tb %s\n", version_text().c_str());
+            return;
+        }
         if (arguments[i] != "--word-bits") {
-            throw UsageError("unknown argument '" + arguments[i] + "'; expected --word-bits N or --help");
+            throw UsageError("unknown argument '" + arguments[i] +
+                             "'; expected --word-bits N, --help or --version");
         }
         if (i + 1 == arguments.size()) throw UsageError("--word-bits: expected 8 to 32");
         word_bits = word_bits_in(arguments[++i]);

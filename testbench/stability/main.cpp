@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "testbench/common/version.hpp"
 #include "testbench/stability/studies.hpp"
 
 namespace {
@@ -49,6 +50,7 @@ const char* const help =
     "  --quick       a tenth of the samples\n"
     "  --seed N      of all random draws (default 1)\n"
     "  --list        the studies' names and purposes\n"
+    "  --version     what the program was built from\n"
     "  --help        this text\n";
 
 struct Options {
@@ -84,6 +86,10 @@ Options read(const std::vector<std::string>& arguments) {
         };
         if (name == "--help") {
             std::fputs(help, stdout);
+            options.done = true;
+            return options;
+        } else if (name == "--version") {
+            std::printf("stability_tb %s\n", raycell::version_text().c_str());
             options.done = true;
             return options;
         } else if (name == "--list") {

@@ -205,8 +205,11 @@ TEST(Usage, AMisspeltOptionIsToldWhatItMayHaveMeant) {
 
 TEST(Usage, EveryProgramSaysWhatItWasBuiltFrom) {
     const Workshop workshop;
-    for (const std::string program : {RAYCELL_PROGRAM, RAYCELL_DEADLOCK_TB}) {
-        const Finished finished = workshop.run_program(program, {"--version"});
+    const fs::path folder = fs::path(RAYCELL_PROGRAM).parent_path();
+    for (const char* program :
+         {"raycell", "deadlock_tb", "cell_tb", "loading_tb", "operators_tb", "stability_tb"}) {
+        SCOPED_TRACE(program);
+        const Finished finished = workshop.run_program((folder / program).string(), {"--version"});
         EXPECT_EQ(finished.exit_code, 0);
         for (const char* part : {"0.2.0, ", "GCC ", "SystemC 2."})
             EXPECT_TRUE(contains(finished.out, part)) << finished.out;
