@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -105,12 +107,56 @@ void pass_on_warnings(const std::string& said, const std::string& prefix) {
     }
 }
 
+/// The scope of a node's signals in the dump if it is an input's buffer, else empty.
+std::string scope_of(const WaitGraph::Node& node) {
+    const std::string input = "input ";
+    if (node.what.rfind(input, 0) != 0) return "";
+    std::string rest = node.what.substr(input.size());  // side and class
+    std::replace(rest.begin(), rest.end(), ' ', '.');
+    return "cell_" + std::to_string(node.x) + "_" + std::to_string(node.y) + "." + rest;
+}
+
+/// Goes round each knot: from a node to one that it waits for and that was not visited.
+std::vector<std::string> buffers_in_turn(const WaitGraph& graph) {
+    std::vector<std::string> scopes;
+    std::set<WaitGraph::Index> to_visit;
+    for (const auto& knot : graph.knots()) to_visit.insert(knot.begin(), knot.end());
+    while (!to_visit.empty()) {
+        std::optional<WaitGraph::Index> at = *to_visit.begin();
+        while (at) {
+            to_visit.erase(*at);
+            const WaitGraph::Node& node = graph.nodes()[*at];
+            const std::string scope = scope_of(node);
+            if (!scope.empty()) scopes.push_back(scope);
+            at.reset();
+            for (const WaitGraph::Index other : node.waits_for) {
+                if (!at && to_visit.count(other) > 0) at = other;
+            }
+        }
+    }
+    return scopes;
+}
+
+/// Puts a group with the knot's buffers before the cells' groups of a save file.
+std::string with_knot(std::string save, const std::vector<std::string>& buffers) {
+    if (buffers.empty()) return save;
+    std::string group = "@800200\n-knot\n@820\n";  // GTKWave: a group begins; words, to the right
+    for (const std::string& buffer : buffers) {
+        for (const char* signal : {"type", "ray", "stall"})
+            group += "raycell." + buffer + "." + signal + "\n";
+    }
+    const auto first = save.find("@800200\n");
+    save.insert(first == std::string::npos ? save.size() : first, group + "@1000200\n-knot\n");
+    return save;
+}
+
 }  // namespace
 
 DeadlockedCells deadlocked_cells(const RunResult& result, Machine& machine) {
     constexpr std::size_t most = 64;
     DeadlockedCells where;
     where.cells = result.knot_cells.empty() ? machine.blocked_cells(most) : result.knot_cells;
+    where.buffers = buffers_in_turn(result.waits);
     where.formed = std::min(result.knot_formed, machine.environment().scheduler.now());
     return where;
 }
@@ -139,7 +185,8 @@ void dump_deadlock(const std::vector<std::string>& program, const RenderOptions&
                                report["hash"]["schedule"].get<std::string>() + ", expected " +
                                hex(schedule_hash));
     }
-    for (const char* suffix : {".vcd", ".gtkw"}) outputs.adopt(suffix, prefix + suffix);
+    outputs.adopt(".vcd", prefix + ".vcd");
+    outputs.write(".gtkw", with_knot(read_text(prefix + ".gtkw"), where.buffers));
 }
 
 }  // namespace raycell

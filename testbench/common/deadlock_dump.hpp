@@ -14,6 +14,8 @@ namespace raycell {
 struct DeadlockedCells {
     std::vector<std::pair<int, int>> cells;  ///< (x, y)
     Cycle formed = 0;                        ///< cycle from which on they stood still
+    /// The knots' buffers, each followed by one that it waits for: "cell_3_4.west.answer".
+    std::vector<std::string> buffers;
 };
 
 /// The cells of the knot and the cycle in which it formed. If the run has no knot: the cells with the oldest

@@ -185,7 +185,7 @@ def array_picture(deadlock, width, height):
     zoomed = (near[2] - near[0]) * 2 <= max(width, height)
     if zoomed:
         pictures.append(view(cells, edges, near, size, 20))
-    waits = f", {len(edges)} waits between them" if edges else ""
+    waits = f", {len(edges)} waits between them, an arrow from who waits to what it waits for" if edges else ""
     formed = (deadlock.get("knot") or {}).get("formed")
     since = f"; it stands since cycle {formed}" if isinstance(formed, (int, float)) else ""
     part = f"; the larger picture: x from {near[0]} to {near[2] - 1}, y from {near[1]} to {near[3] - 1}" if zoomed else ""

@@ -181,12 +181,22 @@ def stalls(cells):
             f"what</tr>{''.join(rows)}</table></div></section>")
 
 
+def why(deadlock):
+    """Why such a machine may not end, and the options with which it is certain to."""
+    bound = deadlock.get("bound") or {}
+    if bound.get("met", True) or not bound.get("reason"):
+        return ""
+    cure = f" With <code>{text(bound['options'])}</code> it is certain to end." if bound.get("options") else ""
+    reason = str(bound["reason"])
+    return f"<p>{text(reason[0].upper() + reason[1:])}.{cure}</p>"
+
+
 def deadlock_part(report, width, height):
     deadlock = report["deadlock"]
     lines = [str(line) for line in deadlock.get("report") or []]
     if not lines and not deadlock.get("knot"):
         return ""
-    parts = [f"<section><h2>What is stuck</h2>{report_charts.array_picture(deadlock, width, height)}"]
+    parts = [f"<section><h2>What is stuck</h2>{why(deadlock)}{report_charts.array_picture(deadlock, width, height)}"]
     if lines:
         parts.append(f"<p>Oldest first:</p><pre>{text(chr(10).join(lines[:REPORT_LINES_SHOWN]))}</pre>")
     if len(lines) > REPORT_LINES_SHOWN:

@@ -56,6 +56,12 @@ TEST(DeadlockTb, ShowsTheCellsOfADeadlockAsWaveformsThatOpenAtIt) {
     const std::uint64_t formed = report.at("deadlock").at("knot").at("formed");
     EXPECT_TRUE(contains(save, " " + std::to_string(50 * formed) + "\n[sst_expanded]"))
         << save.substr(0, 300);
+    // First of all the knot's buffers, so that they are in view.
+    const Json& node = report.at("deadlock").at("knot").at("nodes").at(0);
+    const std::string input = "raycell.cell_" + node.at("x").dump() + "_" + node.at("y").dump() + "." +
+                              node.at("side").get<std::string>() + ".all.stall";
+    EXPECT_LT(save.find("-knot"), save.find("-cell_"));
+    EXPECT_LT(save.find(input), save.find("-cell_")) << input;
     const auto units = save.find("-traversal");
     const auto buffers = save.find("-west all");
     const auto quiet = save.find("-quiet buffers");

@@ -55,6 +55,7 @@ TEST(ReportPage, ShowsWhatIsStuckInADeadlock) {
     expect_self_contained(page);
     EXPECT_TRUE(contains(page, "class=\"verdict deadlock\">deadlock<"));
     EXPECT_TRUE(contains(page, "What is stuck"));
+    EXPECT_TRUE(contains(page, "<code>--networks half</code> it is certain to end")) << "reason and cure";
     EXPECT_GT(count_of(page, "class=\"stuck\""), 3u) << "cells are marked";
     for (const auto& line : report.at("deadlock").at("report")) {
         // The page escapes quotation marks.
