@@ -43,17 +43,17 @@ pid_t start(const SweepRun& run) {
     return process;
 }
 
-/// The results stay; what else a run has written is for whoever asked for it.
-void tidy(const SweepRun& run, bool keep) {
+/// Removes a run's files: of a whole run all but the results, unless `keep`; of another all.
+void tidy(const SweepRun& run, bool whole, bool keep) {
     fs::remove(messages_of(run));
-    if (keep) return;
+    if (whole && keep) return;
     const fs::path prefix(run.prefix);
     const std::string name = prefix.filename().string() + ".";
     std::vector<fs::path> others;
     for (const auto& entry : fs::directory_iterator(prefix.parent_path())) {
         const std::string file = entry.path().filename().string();
-        if (file.rfind(name, 0) == 0 && file != name + "json" && file != name + "toml")
-            others.push_back(entry.path());
+        const bool result = file == name + "json" || file == name + "toml";
+        if (file.rfind(name, 0) == 0 && !(whole && result)) others.push_back(entry.path());
     }
     for (const fs::path& other : others) fs::remove(other);
 }
@@ -71,20 +71,25 @@ class Children {
   public:
     void add(const SweepRun& run) { running_[start(run)] = &run; }
     std::size_t count() const { return running_.size(); }
-    /// Waits for one to end; null if a signal came instead.
-    const SweepRun* wait() {
+    struct Ended {
+        const SweepRun* run = nullptr;
+        bool whole = false;  ///< with a verdict of its own: a run that is interrupted writes results, too
+    };
+    /// Waits for one to end; none if a signal came instead.
+    Ended wait() {
         int status = 0;
         pid_t process = 0;
         // A noted signal does not end a wait.
         while ((process = waitpid(-1, &status, WNOHANG)) == 0) {
-            if (*noted_signal()) return nullptr;
+            if (*noted_signal()) return {};
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
         const auto found = running_.find(process);
         if (found == running_.end()) throw std::runtime_error("can't wait for a run: " + reason_of(errno));
-        const SweepRun* run = found->second;
+        const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        const Ended ended{found->second, found->second->done() && code != exit_interrupted && code >= 0};
         running_.erase(found);
-        return run;
+        return ended;
     }
     void end_all() {
         for (const auto& [process, run] : running_) kill(process, SIGTERM);
@@ -92,7 +97,7 @@ class Children {
             int status = 0;
             while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
             }
-            fs::remove(messages_of(*run));
+            tidy(*run, false, false);
         }
         running_.clear();
     }
@@ -125,18 +130,16 @@ bool make_runs(const std::vector<SweepRun>& runs, int jobs, bool keep, const Swe
             children.add(*to_do[next++]);
         if (children.count() == 0) break;
         progress(done, runs.size(), seconds_since(began));
-        const SweepRun* ended = children.wait();
-        if (*noted_signal()) {
+        const Children::Ended ended = children.wait();
+        const bool interrupted = *noted_signal();
+        if (ended.run) {
+            if (!ended.whole && !interrupted && failure.empty()) failure = failure_of(*ended.run);
+            tidy(*ended.run, ended.whole, keep);
+            done += ended.whole;
+        }
+        if (interrupted) {
             children.end_all();
             return false;
-        }
-        if (!ended) continue;
-        if (ended->done()) {
-            tidy(*ended, keep);
-            ++done;
-        } else if (failure.empty()) {
-            failure = failure_of(*ended);
-            fs::remove(messages_of(*ended));
         }
     }
     if (!failure.empty()) throw std::runtime_error(failure);
