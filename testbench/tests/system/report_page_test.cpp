@@ -81,7 +81,9 @@ TEST(ReportPage, DrawsAKnotsRing) {
     const std::string page = page_of(workshop);
     expect_self_contained(page);
     EXPECT_TRUE(
-        contains(page, "The knot: 4 of 1024 cells, 4 waits between them; it stands since cycle 1234"));
+        contains(page,
+                 "The knot: 4 of 1024 cells, 4 waits between them, an arrow from who waits to what it waits "
+                 "for; it stands since cycle 1234"));
     EXPECT_EQ(count_of(page, "class=\"edge\""), 8u) << "in the array and, larger, beside it";
 }
 
