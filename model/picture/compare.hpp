@@ -13,9 +13,6 @@ struct Accuracy {
     double off_by_1_255_percent = 0;  ///< pixels with a channel off by more than 1/255
     double off_by_0_1_percent = 0;    ///< pixels with a channel off by more than 0.1
     double wrong_hit_percent = 0;     ///< pixels whose first hit is another polygon, or none
-    double ssim = 0;                  ///< see metrics.hpp
-    double flip = 0;                  ///< the same
-    double relative_mse = 0;          ///< the same
 };
 
 /// Compares two pictures of one size. Throws std::invalid_argument if the sizes differ or are 0,

@@ -12,7 +12,7 @@ namespace raycell {
 /// The whole report but for `config`, `accuracy`, `model`, `ranks` and `losses.sample`.
 nlohmann::ordered_json report(const RunResult& result, const CellScene& scene, const PictureSettings& picture,
                               const MachineSettings& machine);
-nlohmann::ordered_json report(const Accuracy& accuracy);
+nlohmann::ordered_json report(const Picture& test, const Picture& truth);
 
 /// JSON as text for a file; bytes of names that are not UTF-8 are replaced.
 std::string to_text(const nlohmann::ordered_json& json);

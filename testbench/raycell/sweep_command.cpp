@@ -14,7 +14,6 @@
 #include "testbench/common/scene_input.hpp"
 #include "testbench/common/signals.hpp"
 #include "testbench/common/traffic_options.hpp"
-#include "testbench/common/version.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/sweep/results.hpp"
 #include "testbench/sweep/runs.hpp"
@@ -56,10 +55,11 @@ struct SweptProgram {
 
 std::vector<SweepRun> runs_of(const SweepDesign& design, const SweepOptions& options,
                               const std::string& program, const std::string& folder) {
+    const std::string identity = digest_of(program);
     std::vector<SweepRun> runs;
     for (const SweepPoint& point : design.points()) {
         SweepRun run;
-        run.prefix = (fs::path(folder) / design.name(point, version_text())).string();
+        run.prefix = (fs::path(folder) / design.name(point, identity)).string();
         run.command = {program};
         if (!options.synthetic) run.command.emplace_back("render");
         for (const std::string& word : design.words(point)) run.command.push_back(word);

@@ -26,6 +26,14 @@ std::string refusal(CLI::App& program, const std::string& option, const std::str
     }
 }
 
+std::string digest(const std::string& text) {
+    Fnv hash;
+    for (const char c : text) hash.add(std::uint64_t(static_cast<unsigned char>(c)));
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash.value()));
+    return digits;
+}
+
 /// "a..b" or "a..b:step", whole numbers; empty if it is none.
 std::vector<std::string> range_of(const std::string& word) {
     const auto dots = word.find("..");
@@ -91,6 +99,10 @@ class Reader {
                 throw UsageError("sweep: more than " + std::to_string(most_sweep_runs) +
                                  " runs; expected fewer values");
         }
+        for (const SweepAxis& axis : design_.axes) {
+            if (axis.option != "scene" && axis.option != "view") continue;
+            for (const std::string& path : axis.values) design_.digests[path] = digest_of(path);
+        }
         return std::move(design_);
     }
 
@@ -149,6 +161,13 @@ class Reader {
 
 }  // namespace
 
+std::string digest_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return digest(text.str());
+}
+
 std::vector<std::string> SweepDesign::words(const SweepPoint& point) const {
     std::vector<std::string> all;
     for (std::size_t i = 0; i < axes.size(); ++i)
@@ -170,13 +189,13 @@ std::string SweepDesign::name(const SweepPoint& point, const std::string& progra
     }
     constexpr std::size_t longest = 150;  // names of files have 255
     if (text.size() > longest) text.resize(longest);
-    Fnv hash;
     std::string everything = program;
     for (const std::string& word : words(point)) everything += '\n' + word;
-    for (const char c : everything) hash.add(std::uint64_t(static_cast<unsigned char>(c)));
-    char digits[17];
-    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash.value()));
-    return text + (text.empty() ? "" : "_") + std::string(digits, 8);
+    for (const std::string& value : point.values) {
+        const auto file = digests.find(value);
+        if (file != digests.end()) everything += '\n' + file->second;
+    }
+    return text + (text.empty() ? "" : "_") + digest(everything).substr(0, 8);
 }
 
 std::vector<std::size_t> SweepDesign::varying() const {
@@ -225,20 +244,21 @@ std::vector<std::string> sweep_words_from_file(const std::string& path) {
     const auto add = [&](const std::string& key, const toml::node& node) {
         // An empty word is the default of a file's name.
         if (is_a_runs_own(key) || node.value_exact<std::string>() == std::string()) return;
-        std::ostringstream value;
+        std::string value;
         if (const auto word = node.value_exact<std::string>()) {
-            value << *word;
+            value = *word;
         } else if (const auto whole = node.value_exact<std::int64_t>()) {
-            value << *whole;
+            value = std::to_string(*whole);
         } else if (const auto real = node.value_exact<double>()) {
-            value << *real;
+            char digits[64];  // the shortest that reads back as the same number
+            value.assign(digits, std::to_chars(digits, digits + sizeof digits, *real).ptr);
         } else if (const auto truth = node.value_exact<bool>()) {
-            value << (*truth ? "true" : "false");
+            value = *truth ? "true" : "false";
         } else {
             throw fail(node.source(),
                        "key '" + printable(key) + "': expected a number, a word or a list of them");
         }
-        words.push_back("--" + key + "=" + value.str());
+        words.push_back("--" + key + "=" + value);
     };
     try {
         const toml::table table = toml::parse(text.str());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct SweepDesign {
     std::vector<SweepAxis> axes;  ///< in the order in which they were given
     /// Of every run: options that may come several times in one ("--cost=walk_step=4").
     std::vector<std::string> fixed;
+    std::map<std::string, std::string> digests;  ///< of the scenes' and view files' contents, by path
 
     /// Indices of the axes of several values, in their order.
     std::vector<std::size_t> varying() const;
@@ -30,12 +32,16 @@ struct SweepDesign {
     std::vector<SweepPoint> points() const;
     /// A run's options as words of a command line.
     std::vector<std::string> words(const SweepPoint& point) const;
-    /// A file name that tells the runs of a sweep apart, and changes with any option and with `program`.
+    /// A file name that tells the runs of a sweep apart. It changes with any option, with the contents of
+    /// scenes and view files, and with `program`, a text that tells programs apart.
     std::string name(const SweepPoint& point, const std::string& program) const;
 };
 
 /// Most runs of one sweep.
 constexpr std::size_t most_sweep_runs = 100000;
+
+/// A digest of a file's contents; of a file that can't be read, that of nothing.
+std::string digest_of(const std::string& path);
 
 /// Reads options with values, lists ("1,2,4") and ranges ("1..8", "8..64:8") of whole numbers; a word that
 /// the option takes as it stands is one value, whatever is in it. An option that comes several times has all

@@ -69,6 +69,7 @@ std::string failure_of(const SweepRun& run) {
 
 class Children {
   public:
+    ~Children() { end_all(); }
     void add(const SweepRun& run) { running_[start(run)] = &run; }
     std::size_t count() const { return running_.size(); }
     struct Ended {

@@ -97,8 +97,6 @@ struct Traffic {
     void join(std::size_t side, Channel& from, Channel& to) {
         cell->in[side].bind(from);
         cell->out[side].bind(to);
-        ins.push_back(&from);
-        outs.push_back(&to);
         sent_to.push_back(&from);
         read_from.push_back(&to);
     }
@@ -149,8 +147,8 @@ struct Traffic {
     std::unique_ptr<CellModule> cell;
     std::vector<std::unique_ptr<PlainChannel>> channels;
     std::vector<std::unique_ptr<Link>> links;
-    std::vector<LinkIn*> ins, read_from;
-    std::vector<LinkOut*> outs, sent_to;
+    std::vector<LinkIn*> read_from;
+    std::vector<LinkOut*> sent_to;
     std::vector<std::uint64_t> log;  ///< cycle, output and class, ray: of each message that came out
 };
 
@@ -171,7 +169,8 @@ TEST_P(OwnChannels, ChangeNothingOfWhatACellBetweenThemDoes) {
     EXPECT_GT(plain.log.size(), 3u * 300);
     EXPECT_EQ(plain.log, linked.log);
     EXPECT_EQ(plain.cell->cell().schedule_hash(), linked.cell->cell().schedule_hash());
-    EXPECT_EQ(plain.environment->meters.counters.rays.ray_hops, linked.environment->meters.counters.rays.ray_hops);
+    EXPECT_EQ(plain.environment->meters.counters.rays.ray_hops,
+              linked.environment->meters.counters.rays.ray_hops);
     EXPECT_GT(plain.environment->meters.counters.rays.return_hops, 100u);
 }
 

@@ -95,6 +95,26 @@ TEST(Sweep, MakesOnlyTheRunsThatAreNotThere) {
     EXPECT_EQ(read_text(workshop.result("s.csv")), csv);
 }
 
+TEST(Sweep, MakesARunAgainWhoseSceneHasChanged) {
+    const Workshop workshop;
+    const std::string scene = read_text(own_scene("cornell.nff"));
+    workshop.write("mine.nff", scene);
+    const Words words = {"sweep", "mine.nff", "--cells", "4x4", "-o", "results/s", "--quiet"};
+    EXPECT_EQ(workshop.run(words).exit_code, 0);
+    EXPECT_EQ(workshop.run(words).exit_code, 0);
+    EXPECT_EQ(files_of_runs(workshop).size(), 2u) << "one run";
+    workshop.write("mine.nff", scene + "# another\n");
+    EXPECT_EQ(workshop.run(words).exit_code, 0);
+    EXPECT_EQ(files_of_runs(workshop).size(), 4u) << "and one of the changed scene";
+}
+
+TEST(Sweep, TakesNumbersFromAFileToTheirLastDigit) {
+    const Workshop workshop;
+    workshop.write("s.toml", "synthetic = true\ncells = \"4x4\"\nhit-probability = 0.123456789012\n");
+    const Finished finished = workshop.run({"sweep", "--config", "s.toml", "--dry-run"});
+    EXPECT_TRUE(contains(finished.out, "--hit-probability=0.123456789012")) << finished.out << finished.err;
+}
+
 TEST(Sweep, IsRepeatedFromTheConfigurationThatItWrote) {
     const Workshop workshop;
     EXPECT_EQ(
