@@ -158,6 +158,7 @@ bool Machine::goes_on(Cycle now) {
     }
     const Counters& counters = env.meters.counters;
     activity_.observe(now, counters);
+    if (before_cycle_) before_cycle_(now);
     const Cycle last_progress = ranks ? ranks->agreed().last_progress : counters.last_progress;
     const std::uint64_t destroyed = ranks ? ranks->agreed().rays_destroyed : counters.rays_destroyed;
     const Cycle idle = now - std::max(last_progress, env.phase_start);

@@ -56,6 +56,10 @@ class Machine : public sc_core::sc_module {
         on_loaded_ = std::move(on_loaded);
     }
 
+    /// `hook` is called before each cycle that is run, with its number; the state is still that of the cycle
+    /// run before.
+    void set_before_cycle(std::function<void(Cycle)> hook) { before_cycle_ = std::move(hook); }
+
     Array& array() { return parts_.array; }
     Environment& environment() { return parts_.environment; }
 
@@ -102,6 +106,7 @@ class Machine : public sc_core::sc_module {
     Counters totals_;  ///< of the whole machine, at the end of the last phase
     ActivityRecorder activity_;
     std::function<void(const RunProgress&)> progress_;
+    std::function<void(Cycle)> before_cycle_;
     std::uint64_t watch_calls_ = 0;
     WallClock::time_point phase_began_;
     std::uint64_t precast_rays_ = 0;

@@ -88,6 +88,8 @@ nlohmann::ordered_json probing(nlohmann::ordered_json config, const RenderOption
     config["window"] = std::to_string(where.formed > last ? where.formed - last : 0) + ":";
     config["vcd-mark"] = where.formed;
     config["vcd-on-deadlock"] = false;
+    config["film"] = 0;
+    config["rays"] = false;
     if (config.contains("truth")) config["truth"] = false;
     config["quiet"] = true;
     config["output"] = prefix;

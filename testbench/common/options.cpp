@@ -167,7 +167,7 @@ void OptionTable::rays(const std::string& name, std::vector<std::uint64_t>& targ
     const auto check = [](const std::string& word) -> std::string {
         std::uint64_t id = 0;
         if (parse_ray(word, id)) return "";
-        return "expected PIXEL/PART, two numbers from 0 to 4294967295, not '" + printable(word) + "'";
+        return "expected PIXEL/BRANCH, two numbers from 0 to 4294967295, not '" + printable(word) + "'";
     };
     const auto set = [&target](const std::vector<std::string>& words) {
         target.clear();
@@ -175,7 +175,7 @@ void OptionTable::rays(const std::string& name, std::vector<std::uint64_t>& targ
     };
     app_.add_option_function<std::vector<std::string>>("--" + name, set, help)
         ->group(group_)
-        ->check(CLI::Validator(check, "PIXEL/PART"))
+        ->check(CLI::Validator(check, "PIXEL/BRANCH"))
         ->allow_extra_args(false);
     entries_.push_back({name, [&target] {
                             nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -315,6 +315,17 @@ void add_watch_options(OptionTable& table, RenderOptions& options) {
                 "prints the lives of all rays of a pixel's tree; may come several times");
 }
 
+void add_recording_options(OptionTable& table, RenderOptions& options) {
+    table.group("Looking inside");
+    table.number(
+        "film", options.film, 0, 2000,
+        "frames of the run at most, in PREFIX.film.json: coarse maps of messages, voxels and slots over "
+        "time, which the report page shows; 0: none");
+    table.flag(
+        "rays", options.rays,
+        "a line for every ray, in PREFIX.rays.csv: where it came from, where it ended, its cycles and hops");
+}
+
 void add_voxel_options(OptionTable& table, PictureSettings& p) {
     table.group("Voxels and hit test");
     table.number("depth", p.depth_levels, 1, 65536, "depth levels of the cube");
@@ -427,6 +438,7 @@ void add_render_options(OptionTable& table, RenderOptions& options) {
     add_scene_options(table, options);
     add_machine_options(table, options);
     add_watch_options(table, options);
+    add_recording_options(table, options);
     add_array_options(table, options);
     add_probe_options(table, options);
 }

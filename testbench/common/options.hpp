@@ -71,7 +71,7 @@ class OptionTable {
     void cells(const std::string& name, std::vector<CellRange>& target, const std::string& help);
     /// --NAME P or P,Q: two shares from 0 to 1; P alone leaves Q at 0.
     void shares(const std::string& name, double& p, double& q, const std::string& help);
-    /// --NAME PIXEL/PART, may come several times: rays by their ids.
+    /// --NAME PIXEL/BRANCH, may come several times: rays by their ids.
     void rays(const std::string& name, std::vector<std::uint64_t>& target, const std::string& help);
     /// --NAME FROM:TO, cycles; either side may be empty.
     void window(const std::string& name, CycleWindow& target, const std::string& help);
@@ -113,6 +113,8 @@ struct RenderOptions {
     std::vector<std::uint64_t> watch_rays;
     std::vector<CellRange> watch_pixels;
     ProbeOptions probes;
+    int film = 0;       ///< frames of the film; 0: none
+    bool rays = false;  ///< a table of all rays
     std::string save_array;         ///< file for the loaded array; empty: none
     std::string config;             ///< file of options; empty: none
     std::string load_array;         ///< file of a loaded array to start with; empty: none
@@ -134,6 +136,8 @@ void add_link_options(OptionTable& table, MachineSettings& machine);
 void add_communication_options(OptionTable& table, MachineSettings& machine);
 /// What runs the cells.
 void add_granularity_options(OptionTable& table, RenderOptions& options);
+/// What a run records for its page.
+void add_recording_options(OptionTable& table, RenderOptions& options);
 /// Options of render alone, for watching rays.
 void add_watch_options(OptionTable& table, RenderOptions& options);
 /// The other options of render.

@@ -1,6 +1,5 @@
 #include "testbench/common/ray_watch.hpp"
 
-#include <algorithm>
 #include <ostream>
 #include <sstream>
 
@@ -11,7 +10,6 @@ namespace raycell {
 namespace {
 
 constexpr const char* side_names[] = {"east", "south", "west", "north"};
-constexpr const char* kind_names[] = {"primary", "reflected", "refracted", "shadow", "memo", "precast"};
 constexpr const char* answer_names[] = {"intensity", "lit", "blocked", "postponed"};
 
 std::string text_of_cell(int x, int y) { return "(" + std::to_string(x) + ", " + std::to_string(y) + ")"; }
@@ -53,42 +51,22 @@ bool parse_ray(const std::string& word, std::uint64_t& id) {
     return true;
 }
 
-RayWatch::Life* RayWatch::life_of(std::uint64_t ray) {
-    const auto found = known_.find(ray);
-    return found == known_.end() ? nullptr : &lives_[found->second];
-}
-
 void RayWatch::launched(const Cell& cell, Cycle now, const Ray& ray, const Ray* parent) {
-    if (Life* again = life_of(ray.id)) {
-        again->answering = false;
-        again->ended = never;
-        ++again->open;
-        return;
-    }
+    if (lives_.again(ray.id)) return;
     const auto root = roots_.find(ray.id);
     const bool by_pixel = ray.kind != RayKind::precast && pixels_.count(pixel_of(ray.id)) > 0;
-    const Life* ancestor = parent ? life_of(parent->id) : nullptr;
+    const bool by_parent = parent && lives_.find(parent->id);
     if (root != roots_.end()) root->second = true;
-    if (root == roots_.end() && !by_pixel && !ancestor) return;
-    Life life;
-    life.id = ray.id;
-    life.kind = ray.kind;
-    life.generation = ray.generation;
-    life.depth = ancestor ? ancestor->depth + 1 : 0;
-    life.x = cell.x();
-    life.y = cell.y();
-    life.launched = now;
-    known_.emplace(ray.id, lives_.size());
-    lives_.push_back(life);
+    if (root != roots_.end() || by_pixel || by_parent) lives_.add(cell, now, ray, parent);
 }
 
 std::string RayWatch::what_happened(const Cell& cell, CellEvent event, std::uint32_t detail,
-                                    Life& life) const {
+                                    RayLife& life) const {
     const std::string slot = "slot " + std::to_string(detail);
     switch (event) {
         case CellEvent::launch:
             return life.postponed > 0 ? "launched again, postponed " + times(life.postponed, "time")
-                                      : std::string("launched: ") + kind_names[int(life.kind)] +
+                                      : std::string("launched: ") + ray_kind_names[int(life.kind)] +
                                             ", generation " + std::to_string(life.generation);
         case CellEvent::test:
             return "test begins: " + outcome(Visit::Event(detail), life.kind);
@@ -126,22 +104,15 @@ std::string RayWatch::what_happened(const Cell& cell, CellEvent event, std::uint
 
 void RayWatch::cell_event(const Cell& cell, Cycle now, CellEvent event, std::uint64_t ray,
                           std::uint32_t detail) {
-    Life* life = life_of(ray);
+    RayLife* life = lives_.find(ray);
     if (!life || event == CellEvent::load) return;
-    if (event == CellEvent::answer) life->answering = true;
-    if (event == CellEvent::send) ++(life->answering ? life->answer_hops : life->ray_hops);
-    if (event == CellEvent::silent) life->ended = now;
-    if (event == CellEvent::deliver) {
-        const bool postponed = Answer::Kind(detail) == Answer::Kind::postponed;
-        life->postponed += postponed;
-        if (--life->open == 0 && !postponed) life->ended = now;
-    }
+    RayLives::note(*life, cell, now, event, detail);
     const std::string what = what_happened(cell, event, detail, *life);
     if (!what.empty()) tell(index(cell.x(), cell.y()), cell.x(), cell.y(), now, *life, what);
 }
 
 void RayWatch::stalled(const Cell& cell, Cycle now, std::uint64_t ray, Stall cause, Cycle cycles) {
-    Life* life = life_of(ray);
+    RayLife* life = lives_.find(ray);
     if (!life) return;
     life->waited[std::size_t(cause)] += cycles;
     const std::string what =
@@ -155,16 +126,15 @@ void RayWatch::stalled(const Cell& cell, Cycle now, std::uint64_t ray, Stall cau
 }
 
 void RayWatch::exterior_answered(int x, int y, Cycle now, const Answer& answer) {
-    Life* life = life_of(answer.id);
+    RayLife* life = lives_.find(answer.id);
     if (!life) return;
-    life->answering = true;
-    ++life->answer_hops;
+    RayLives::from_exterior(*life);
     const std::size_t after_all_cells = std::size_t(width_) * std::size_t(height_);
     tell(after_all_cells, x, y, now, *life,
          std::string("answer from the exterior hops in: ") + answer_names[int(answer.kind)]);
 }
 
-void RayWatch::tell(std::size_t cell, int x, int y, Cycle now, const Life& life, const std::string& what) {
+void RayWatch::tell(std::size_t cell, int x, int y, Cycle now, const RayLife& life, const std::string& what) {
     if (now != cycle_) flush();
     cycle_ = now;
     std::string cycle = std::to_string(now);
@@ -181,41 +151,36 @@ void RayWatch::flush() {
     lines_.clear();
 }
 
-void RayWatch::summarise(const Life& life, Cycle now) {
+void RayWatch::summarise(const RayLife& life, Cycle now) {
     const bool ended = life.ended != never;
     const Cycle end = ended ? life.ended : now;
-    Cycle waited = 0;
     std::string causes;
     for (std::size_t cause = 1; cause <= stall_causes; ++cause) {
-        waited += life.waited[cause];
         if (life.waited[cause] == 0) continue;
         causes += (causes.empty() ? " (" : ", ") + std::string(stall_names[cause]) + " " +
                   std::to_string(life.waited[cause]);
     }
-    out_ << "ray " << ray_name(life.id) << ": " << kind_names[int(life.kind)] << ", generation "
+    out_ << "ray " << ray_name(life.id) << ": " << ray_kind_names[int(life.kind)] << ", generation "
          << life.generation << ", from cell " << text_of_cell(life.x, life.y) << ", cycles " << life.launched
          << " to " << end << (ended ? "" : " (not home)") << ", " << end - life.launched << " cycles, hops "
-         << life.ray_hops << " + " << life.answer_hops << " of answers, waited " << waited << causes
-         << (causes.empty() ? "" : ")");
+         << life.ray_hops << " + " << life.answer_hops << " of answers, waited " << life.waited_in_all()
+         << causes << (causes.empty() ? "" : ")");
     if (life.postponed > 0) out_ << ", postponed " << times(life.postponed, "time");
     out_ << '\n';
 }
 
 void RayWatch::finish(Cycle now) {
     flush();
-    std::sort(lives_.begin(), lives_.end(), [this](const Life& a, const Life& b) {
-        return std::make_tuple(a.launched, index(a.x, a.y), a.id) <
-               std::make_tuple(b.launched, index(b.x, b.y), b.id);
-    });
     std::uint64_t hops = 0;
-    for (const Life& life : lives_) {
+    for (const std::size_t index : lives_.in_order()) {
+        const RayLife& life = lives_.all()[index];
         summarise(life, now);
         hops += life.ray_hops + life.answer_hops;
     }
     for (const auto& [id, came] : roots_) {
         if (!came) out_ << "ray " << ray_name(id) << " was never launched\n";
     }
-    out_ << "watched: " << times(lives_.size(), "ray") << ", " << times(hops, "hop") << '\n';
+    out_ << "watched: " << times(lives_.all().size(), "ray") << ", " << times(hops, "hop") << '\n';
 }
 
 std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& out) {

@@ -1,17 +1,16 @@
 // The life of chosen rays and their children, as text: --watch-ray, --watch-pixel.
 #pragma once
 
-#include <array>
 #include <iosfwd>
 #include <map>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
 #include "cells/channels/observer.hpp"
 #include "model/settings/settings.hpp"
+#include "testbench/common/ray_lives.hpp"
 
 namespace raycell {
 
@@ -39,37 +38,17 @@ class RayWatch : public CellObserver {
     void exterior_answered(int x, int y, Cycle now, const Answer& answer) override;
 
   private:
-    /// What is known of a watched ray.
-    struct Life {
-        std::uint64_t id = 0;
-        RayKind kind = RayKind::primary;
-        int generation = 0;
-        int depth = 0;  ///< of the indentation
-        int x = 0;      ///< home
-        int y = 0;
-        Cycle launched = 0;  ///< the first time
-        Cycle ended = never;
-        std::uint64_t ray_hops = 0;
-        std::uint64_t answer_hops = 0;
-        std::uint64_t postponed = 0;
-        /// Rays of this id on their way. With memo, the rays of one pixel from voxels of the same number
-        /// share an id.
-        int open = 1;
-        bool answering = false;  ///< the ray has ended, its answer is on its way
-        std::array<Cycle, stall_causes + 1> waited{};
-    };
     struct Line {
         std::size_t cell;
         std::uint64_t ray;
         std::string text;
     };
 
-    Life* life_of(std::uint64_t ray);
     std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width_) + std::size_t(x); }
-    void tell(std::size_t cell, int x, int y, Cycle now, const Life& life, const std::string& what);
+    void tell(std::size_t cell, int x, int y, Cycle now, const RayLife& life, const std::string& what);
     void flush();
-    std::string what_happened(const Cell& cell, CellEvent event, std::uint32_t detail, Life& life) const;
-    void summarise(const Life& life, Cycle now);
+    std::string what_happened(const Cell& cell, CellEvent event, std::uint32_t detail, RayLife& life) const;
+    void summarise(const RayLife& life, Cycle now);
 
     std::ostream& out_;
     Networks networks_;
@@ -77,9 +56,8 @@ class RayWatch : public CellObserver {
     int height_;
     std::map<std::uint64_t, bool> roots_;  ///< watched by id, and whether it was launched
     std::unordered_set<std::uint64_t> pixels_;
-    std::unordered_map<std::uint64_t, std::size_t> known_;  ///< index of a ray in lives_
-    std::vector<Life> lives_;                               ///< in the order of their first launch
-    Cycle cycle_ = 0;                                       ///< of lines_
+    RayLives lives_;
+    Cycle cycle_ = 0;  ///< of lines_
     std::vector<Line> lines_;
 };
 
@@ -88,7 +66,7 @@ struct RenderOptions;
 /// watched.
 std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& out);
 
-/// Reads a ray's id from PIXEL/PART, the form of ray_name(). False if the word has another form.
+/// Reads a ray's id from PIXEL/BRANCH, the form of ray_name(). False if the word has another form.
 bool parse_ray(const std::string& word, std::uint64_t& id);
 
 }  // namespace raycell

@@ -30,6 +30,7 @@ void add_traffic_options(OptionTable& table, TrafficOptions& options) {
                  "shadow rays of each hit; with them the last generation has to wait too");
     add_communication_options(table, options.run.machine);
     add_granularity_options(table, options.run);
+    add_recording_options(table, options.run);
     add_waveform_options(table, options.run);
     table.group("Traffic");
     table.number("seed", t.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1,

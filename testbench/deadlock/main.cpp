@@ -5,6 +5,7 @@
 #include <systemc>
 
 #include "cells/clock/wall_time.hpp"
+#include "cells/meters/observer_list.hpp"
 #include "model/tracing/traffic.hpp"
 #include "testbench/common/cells_csv.hpp"
 #include "testbench/common/configuration.hpp"
@@ -15,6 +16,7 @@
 #include "testbench/common/machine_run.hpp"
 #include "testbench/common/new_file.hpp"
 #include "testbench/common/probe_run.hpp"
+#include "testbench/common/recording.hpp"
 #include "testbench/common/report_json.hpp"
 #include "testbench/common/scene_input.hpp"
 #include "testbench/common/traffic_options.hpp"
@@ -55,7 +57,7 @@ void summarise(const Json& json, std::uint64_t seed) {
 
 /// The files of a run that has ended, published together. False if a signal cut short the waveforms.
 bool write_results(const RenderOptions& o, Machine& machine, const RunResult& result, const Json& json,
-                   ProbeRun* probes, OutputSet& outputs) {
+                   ProbeRun* probes, const Recording& recording, OutputSet& outputs) {
     std::string cells = cells_csv_header();
     for (const std::string& row : cells_csv_rows(machine, result)) cells += row;
     outputs.write(".toml", to_toml(json["config"]));
@@ -66,6 +68,7 @@ bool write_results(const RenderOptions& o, Machine& machine, const RunResult& re
                      [&] { return knot_svg(result, o.picture.width, o.picture.height); });
     outputs.write(".json", to_text(json));
     if (probes) probes->write(outputs);
+    recording.write(outputs);
     bool whole = true;
     if (o.probes.on_deadlock && result.verdict == Verdict::deadlock) {
         try {
@@ -87,6 +90,7 @@ void announce(const RenderOptions& o, OutputSet& outputs) {
     check_place("--output", o.prefix);
     outputs.announce({".toml", ".cells.csv", ".waits.json", ".knot.svg", ".json"});
     if (!o.probes.cells.empty() || o.probes.on_deadlock) outputs.announce({".vcd", ".gtkw"});
+    outputs.announce(recording_suffixes(o));
     spare_inputs(o, outputs);
 }
 
@@ -94,6 +98,7 @@ int run(TrafficOptions& options, const OptionTable& table) {
     RenderOptions& o = options.run;
     check_granularity(o);
     check_probes(o);
+    check_recording(o);
     OutputSet outputs(o.prefix);
     announce(o, outputs);
     check_memory(o);
@@ -113,12 +118,17 @@ int run(TrafficOptions& options, const OptionTable& table) {
     const double wall_build = seconds_since(built);
     std::unique_ptr<ProbeRun> probes;
     if (!o.probes.cells.empty()) probes = std::make_unique<ProbeRun>(o, *machine, outputs);
+    CellObserverList observers;
+    Recording recording(o, *machine, observers);
+    if (!observers.empty()) machine->environment().meters.observer = &observers;
     const bool progress = shows_progress(o);
     const Interruptible interruptible(*machine);
     const RunResult result =
         machine->run(progress ? show_progress : std::function<void(const RunProgress&)>());
     if (progress) end_progress();
     if (probes) probes->finish();
+    recording.finish();
+    machine->environment().meters.observer = nullptr;
 
     Json json = report(result, scene, picture, o.machine);
     const bool equal = equals(result.picture, golden);
@@ -128,7 +138,8 @@ int run(TrafficOptions& options, const OptionTable& table) {
                                      {"build", wall_build},
                                      {"load", result.wall_load},
                                      {"trace", result.wall_trace}};
-    const bool whole = o.prefix.empty() || write_results(o, *machine, result, json, probes.get(), outputs);
+    const bool whole =
+        o.prefix.empty() || write_results(o, *machine, result, json, probes.get(), recording, outputs);
     explain(result, bound, "deadlock_tb");
     if (!o.quiet) summarise(json, options.traffic.seed);
     if (!equal) std::cerr << "deadlock_tb: the picture is not that of the untimed machine\n";

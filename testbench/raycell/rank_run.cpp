@@ -83,6 +83,8 @@ void check_ranks(const RenderOptions& options) {
     if (!options.golden.empty()) refuse("--golden");
     if (!options.save_array.empty()) refuse("--save-array");
     if (!options.load_array.empty()) refuse("--load-array");
+    if (options.film > 0) refuse("--film");
+    if (options.rays) refuse("--rays");
     if (!options.watch_rays.empty()) refuse("--watch-ray");
     if (!options.watch_pixels.empty()) refuse("--watch-pixel");
     if (options.picture.height < launched_ranks().count) {

@@ -26,6 +26,7 @@
 #include "testbench/common/picture_file.hpp"
 #include "testbench/common/probe_run.hpp"
 #include "testbench/common/ray_watch.hpp"
+#include "testbench/common/recording.hpp"
 #include "testbench/common/report_json.hpp"
 #include "testbench/common/scene_input.hpp"
 #include "testbench/common/time_estimate.hpp"
@@ -59,6 +60,7 @@ struct Run {
     ExpectedSeconds expected;
     std::string cells_csv;
     std::unique_ptr<ProbeRun> probes;              ///< null: none
+    std::unique_ptr<Recording> recording;          ///< of a timed run
     std::unique_ptr<GoldenRun> golden;             ///< null: none
     DeadlockedCells deadlocked;                    ///< with --vcd-on-deadlock
     Json ranks;                                    ///< empty: one process
@@ -101,6 +103,7 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
         run.golden = std::make_unique<GoldenRun>(options, configuration, machine, outputs);
         observers.add(run.golden->observer());
     }
+    run.recording = std::make_unique<Recording>(options, machine, observers);
     if (!observers.empty()) machine.environment().meters.observer = &observers;
     if (!options.probes.cells.empty()) run.probes = std::make_unique<ProbeRun>(options, machine, outputs);
     const bool progress = shows_progress(options) && !watch && (!ranks || ranks->first());
@@ -110,6 +113,7 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     if (watch) watch->finish(machine.environment().scheduler.now());
     machine.environment().meters.observer = nullptr;
     if (run.probes) run.probes->finish();
+    run.recording->finish();
     if (run.golden) run.golden->finish();
     if (options.probes.on_deadlock && run.result.verdict == Verdict::deadlock) {
         run.deadlocked = deadlocked_cells(run.result, machine);
@@ -228,6 +232,7 @@ std::vector<std::string> suffixes_of(const RenderOptions& options) {
     };
     if (options.truth) add(truth_suffixes);
     if (!options.probes.cells.empty() || options.probes.on_deadlock) add({".vcd", ".gtkw"});
+    add(recording_suffixes(options));
     add(golden_suffixes(options));
     return all;
 }
@@ -280,6 +285,7 @@ bool write_results(const RenderOptions& options, const CellScene& scene, const R
     outputs.write(".toml", to_toml(config));
     outputs.write(".json", to_text(json));
     if (run.probes) run.probes->write(outputs);
+    if (run.recording) run.recording->write(outputs);
     if (!run.deadlocked.cells.empty()) {
         unless_interrupted("no waveforms", {".vcd", ".gtkw"}, [&] {
             dump_deadlock({"raycell", "render"}, options, config, run.deadlocked, result.schedule_hash,
@@ -311,6 +317,7 @@ int run(const RenderOptions& options, const OptionTable& table) {
     check_granularity(options);
     watch_of(options, std::cout);  // throws early for what can't be watched
     check_probes(options);
+    check_recording(options);
     check_golden(options);
     check_ranks(options);
     check_arrays(options);

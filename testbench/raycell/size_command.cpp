@@ -99,6 +99,12 @@ class ArrayModel : public SizeModel {
         return trial;
     }
 
+    void step_begins(const SizeStep& step) const override {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (step.number != step_.number) runs_before_ = runs_;
+        step_ = step;
+    }
+
   private:
     const LoadedCells& loaded(SizeSetting setting) const {
         setting.normals = Normals::linear;
@@ -119,7 +125,11 @@ class ArrayModel : public SizeModel {
         SizeTrial trial;
         trial.setting = setting;
         const std::lock_guard<std::mutex> lock(mutex_);
-        std::cerr << "\r\033[Ksize: run " << ++runs_ << ", " << words_for(report(trial)) << std::flush;
+        std::cerr << "\r\033[Ksize: step " << step_.number << " of " << SizeStep::count << ", " << step_.what;
+        if (step_.number == 3) std::cerr << ' ' << step_.part << " of " << step_.parts;
+        std::cerr << "; run " << ++runs_;
+        if (step_.number < 3) std::cerr << " of " << runs_before_ + step_.parts;
+        std::cerr << ": " << words_for(report(trial)) << std::flush;
     }
 
     const RenderOptions& options_;
@@ -128,7 +138,9 @@ class ArrayModel : public SizeModel {
     const Picture& truth_;
     mutable std::mutex mutex_;
     mutable std::map<SizeSetting, LoadedCells> loaded_;
-    mutable int runs_ = 0;
+    mutable std::size_t runs_ = 0;
+    mutable std::size_t runs_before_ = 0;  ///< the present step
+    mutable SizeStep step_{1, "hit tests", 0, 0};
 };
 
 /// The limit, and the powers of two below it.

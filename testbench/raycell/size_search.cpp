@@ -52,6 +52,11 @@ void SizeSearch::run_all(const std::vector<SizeSetting>& settings) {
     }
 }
 
+std::size_t SizeSearch::untried(const std::vector<SizeSetting>& settings) const {
+    return std::size_t(std::count_if(settings.begin(), settings.end(),
+                                     [this](const SizeSetting& s) { return index_.count(s) == 0; }));
+}
+
 const SizeTrial& SizeSearch::trial(const SizeSetting& setting) {
     run_all({setting});
     return tried_[index_.at(setting)];
@@ -67,6 +72,7 @@ std::vector<SizeSearch::Combination> SizeSearch::reachable_rungs() {
             if (!compares_levels(hit)) break;
         }
     }
+    model_.step_begins({1, "hit tests", 0, longest.size()});
     run_all(longest);
     std::vector<Combination> rungs;
     for (const SizeSetting& setting : longest) {
@@ -98,6 +104,7 @@ std::vector<SizeSearch::Combination> SizeSearch::reachable_combinations() {
     }
     std::vector<SizeSetting> longest;
     for (const Combination& combination : all) longest.push_back(combination.setting);
+    model_.step_begins({2, "normals and shadows", 0, untried(longest)});
     run_all(longest);
     const auto beyond = [this](const Combination& c) {
         return !goal_.nearly_met_by(trial(c.setting).accuracy);
@@ -219,12 +226,22 @@ void SizeSearch::step_down() {
 
 std::optional<SizeTrial> SizeSearch::find() {
     std::vector<Combination> combinations = reachable_combinations();
-    for (Combination& c : combinations) search_level(c, c.setting.depth_levels);
+    std::size_t parts = combinations.size();
+    for (const Combination& c : combinations) {
+        for (const int levels : c.levels) parts += levels != c.setting.depth_levels;
+    }
+    std::size_t part = 0;
+    const auto search = [&](Combination& c, int levels) {
+        model_.step_begins({3, "word lengths", ++part, parts});
+        search_level(c, levels);
+    };
+    for (Combination& c : combinations) search(c, c.setting.depth_levels);
     for (Combination& c : combinations) {
         for (const int levels : c.levels) {
-            if (levels != c.setting.depth_levels) search_level(c, levels);
+            if (levels != c.setting.depth_levels) search(c, levels);
         }
     }
+    model_.step_begins({4, best_ ? "one step smaller" : "the nearest, with shorter words", 0, 0});
     if (!best_) try_all_words();
     if (!best_) return std::nullopt;
     step_down();

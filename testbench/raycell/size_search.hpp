@@ -61,13 +61,24 @@ struct SizeTrial {
 using SizeCost = std::pair<std::uint64_t, std::uint64_t>;
 inline SizeCost cost_of(const StorageCounts& storage) { return {storage.max_cell_bits, storage.bits}; }
 
-/// Both functions are called from two threads at once.
+/// How far a search is.
+struct SizeStep {
+    static constexpr int count = 4;
+    int number;         ///< from 1 to `count`
+    const char* what;   ///< what it tries
+    std::size_t part;   ///< step 3: from 1 to `parts`, settings whose words are searched
+    std::size_t parts;  ///< steps 1 and 2: runs
+};
+
+/// storage() and run() are called from two threads at once.
 class SizeModel {
   public:
     virtual ~SizeModel() = default;
     /// What the setting stores. Cheap: nothing is traced.
     virtual StorageCounts storage(const SizeSetting& setting) const = 0;
     virtual SizeTrial run(const SizeSetting& setting) const = 0;
+    /// The search begins a step, or a part of it; for showing how far it is.
+    virtual void step_begins(const SizeStep& /*step*/) const {}
 };
 
 /// Searches from coarse to fine: hit tests, then normals and shadows with the longest words, then word bits,
@@ -98,6 +109,7 @@ class SizeSearch {
     };
 
     void run_all(const std::vector<SizeSetting>& settings);
+    std::size_t untried(const std::vector<SizeSetting>& settings) const;
     const SizeTrial& trial(const SizeSetting& setting);
     bool meets(const SizeSetting& setting) { return trial(setting).meets; }
     std::vector<Combination> reachable_rungs();

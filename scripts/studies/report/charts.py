@@ -1,5 +1,6 @@
 """Line charts of a run's activity and the picture of a deadlock, as SVG that follows the page's colours."""
 import html
+import itertools
 import math
 import re
 
@@ -32,9 +33,10 @@ def ticks(low, high, count):
     return [i * step for i in range(first, int(high / step + 1e-9) + 1)]
 
 
-def chart(title, start, end, widths, values, marks):
-    """A line chart in steps, one value per bucket. `marks`: (cycle, text) of vertical lines."""
-    top = nice(max(values), (1, 1.5, 2, 3, 4, 5, 6, 8, 10))
+def chart(title, start, end, lines, marks):
+    """A chart of lines in steps. `lines`: of each its first cycle, the widths of its buckets, their values.
+    `marks`: (cycle, text) of vertical lines."""
+    top = nice(max(max(values) for _, _, values in lines), (1, 1.5, 2, 3, 4, 5, 6, 8, 10))
     def x(cycle):
         return LEFT + (cycle - start) / max(end - start, 1) * (WIDTH - LEFT - RIGHT)
     def y(value):
@@ -48,14 +50,16 @@ def chart(title, start, end, widths, values, marks):
             parts.append(f'<text x="{x(tick):.1f}" y="{HEIGHT - BOTTOM + 14}" text-anchor="middle">'
                          f'{number(tick)}</text>')
     parts.append(f'<text x="{WIDTH - RIGHT}" y="{HEIGHT - 3}" text-anchor="end">cycle</text>')
-    path, at = [], start
-    for width, value in zip(widths, values):
-        path.append(f"{x(at):.1f},{y(value):.1f} {x(at + width):.1f},{y(value):.1f}")
-        at += width
-    line = " ".join(path)
-    base = f"{y(0):.1f}"
-    parts.append(f'<polygon class="area" points="{LEFT},{base} {line} {x(at):.1f},{base}"/>'
-                 f'<polyline class="line" points="{line}"/>')
+    for index, (first, widths, values) in enumerate(lines):
+        path, at = [], first
+        for width, value in zip(widths, values):
+            path.append(f"{x(at):.1f},{y(value):.1f} {x(at + width):.1f},{y(value):.1f}")
+            at += width
+        line = " ".join(path)
+        base = f"{y(0):.1f}"
+        if index == 0:
+            parts.append(f'<polygon class="area" points="{x(first):.1f},{base} {line} {x(at):.1f},{base}"/>')
+        parts.append(f'<polyline class="line{" second" if index else ""}" points="{line}"/>')
     for cycle, text in marks:
         if start < cycle < end:
             side = "end" if x(cycle) > WIDTH * 0.6 else "start"
@@ -64,8 +68,9 @@ def chart(title, start, end, widths, values, marks):
                          f'<text class="mark" x="{x(cycle) + shift:.1f}" y="{TOP + 9}" text-anchor="{side}">'
                          f'{html.escape(text)}</text>')
     return (f'<figure class="chart"><figcaption>{html.escape(title)}</figcaption>'
-            f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{html.escape(title)} over time">'
-            f'{"".join(parts)}</svg></figure>')
+            f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{html.escape(title)} over time" '
+            f'data-start="{start}" data-end="{end}" data-left="{LEFT}" data-right="{WIDTH - RIGHT}">{"".join(parts)}'
+            f'<line class="cursor" y1="{TOP}" y2="{y(0):.1f}" style="display:none"/></svg></figure>')
 
 
 def bucket_widths(series, count):
@@ -73,41 +78,58 @@ def bucket_widths(series, count):
     return [max(min(width, cycles - i * width), 1) for i in range(count)]
 
 
-def activity(report, pixels):
-    """HTML of the charts, or None for a run without time."""
-    series = report.get("activity")
-    if not isinstance(series, dict):
+def loading_line(report):
+    """The line of the hops of loading, or None where the array was loaded by another run."""
+    load = (report.get("activity") or {}).get("load") or {}
+    if not load.get("hops") or max(load["hops"]) <= 0:
         return None
-    load = series.get("load") or {}  # null where the array was loaded by another run
+    widths = bucket_widths(load, len(load["hops"]))
+    return load["start_cycle"], widths, [h / w for h, w in zip(load["hops"], widths)]
+
+
+def line_of(report, key, how, pixels):
+    """The line of one of CHARTS, or None where nothing happened."""
+    series = report["activity"]
+    values = series.get(key)
+    if not values or max(values) <= 0:
+        return None
+    widths = bucket_widths(series, len(values))
+    if how is True:
+        values = [v / w for v, w in zip(values, widths)]
+    elif how == "kilo":
+        values = [1000 * v / w for v, w in zip(values, widths)]
+    elif how is None:
+        done = itertools.accumulate(values)
+        values = [100 * total / pixels for total in done]
+    return series["start_cycle"], widths, values
+
+
+def drawn(title, lines, marks):
+    """A chart of these lines, from the first cycle of any to the last."""
+    ends = [first + sum(widths) for first, widths, _ in lines]
+    return chart(title, min(first for first, _, _ in lines), max(ends), lines, marks)
+
+
+def activity(reports, pixels):
+    """HTML of the charts of one run or of several beside each other, or None for runs without time."""
+    reports = [r for r in reports if isinstance(r.get("activity"), dict)]
+    if not reports:
+        return None
     figures = []
-    if load.get("hops") and max(load["hops"]) > 0:
-        widths = bucket_widths(load, len(load["hops"]))
-        rates = [h / w for h, w in zip(load["hops"], widths)]
-        figures.append(chart("loading: hops per cycle", load["start_cycle"], load["start_cycle"] + load["cycles"],
-                             widths, rates, []))
+    loading = [line for line in map(loading_line, reports) if line]
+    if loading:
+        figures.append(drawn("loading: hops per cycle", loading, []))
     marks = []
-    if (series.get("trace_start") or 0) > series.get("start_cycle", 0):
+    series = reports[0]["activity"]
+    if len(reports) == 1 and (series.get("trace_start") or 0) > series.get("start_cycle", 0):
         marks.append((series["trace_start"], "trace"))
-    formed = (report.get("deadlock", {}).get("knot") or {}).get("formed")
-    if isinstance(formed, (int, float)):
+    formed = (reports[0].get("deadlock", {}).get("knot") or {}).get("formed")
+    if len(reports) == 1 and isinstance(formed, (int, float)):
         marks.append((formed, "knot"))
     for key, title, how in CHARTS:
-        values = series.get(key)
-        if not values or max(values) <= 0:
-            continue
-        widths = bucket_widths(series, len(values))
-        if how is True:
-            values = [v / w for v, w in zip(values, widths)]
-        elif how == "kilo":
-            values = [1000 * v / w for v, w in zip(values, widths)]
-        elif how is None:
-            done, total = [], 0
-            for v in values:
-                total += v
-                done.append(100 * total / pixels)
-            values = done
-        start = series["start_cycle"]
-        figures.append(chart(title, start, start + series["cycles"], widths, values, marks))
+        lines = [line for line in (line_of(r, key, how, pixels) for r in reports) if line]
+        if lines:
+            figures.append(drawn(title, lines, marks))
     return f'<div class="charts">{"".join(figures)}</div>' if figures else None
 
 
@@ -148,6 +170,16 @@ def arrow(start, end):
             f"L{right[0]:.2f} {right[1]:.2f}")
 
 
+def axis_number(x, y, anchor, value, size):
+    return (f'<text class="axis" x="{x:.2f}" y="{y:.2f}" text-anchor="{anchor}" style="font-size:{size:.2f}px">'
+            f'{number(value)}</text>')
+
+
+LEGEND = ('<div class="legend"><span><svg viewBox="0 0 5 3"><rect class="stuck" width="5" height="3"/></svg>a cell in which '
+          'something is stuck</span><span><svg viewBox="0 0 5 3"><path class="edge" d="M.3 1.5H4.5M3.7 .9L4.5 1.5L3.7 2.1"/>'
+          '</svg>it waits for</span><span>numbers: x to the right, y downwards, in cells</span></div>')
+
+
 def view(cells, edges, frame, size, rem):
     """SVG of the part `frame` (x0, y0, x1, y1; x1 and y1 excluded) of an array of `size`."""
     width, height = size
@@ -160,7 +192,16 @@ def view(cells, edges, frame, size, rem):
     parts += [f'<rect class="stuck" x="{x}" y="{y}" width="1" height="1"/>' for x, y in cells]
     parts += [f'<path class="edge" d="{arrow(*edge)}"/>' for edge in edges]
     ratio = min(max((x1 - x0) / (y1 - y0), 0.2), 8)  # a single row or column is stretched
-    return (f'<svg viewBox="{x0} {y0} {x1 - x0} {y1 - y0}" preserveAspectRatio="none" style="aspect-ratio:{ratio:.3f};'
+    # Cells are numbered along the lower and the left edge, in a margin that the frame is widened by.
+    size_of_text = max(x1 - x0, y1 - y0) / 24
+    for tick in ticks(max(x0, 0), min(x1, width) - 1, 6):
+        if tick == int(tick):
+            parts.append(axis_number(tick + 0.5, y1 + 1.3 * size_of_text, "middle", tick, size_of_text))
+    for tick in ticks(max(y0, 0), min(y1, height) - 1, 6):
+        if tick == int(tick):
+            parts.append(axis_number(x0 - 0.3 * size_of_text, tick + 0.5 + 0.35 * size_of_text, "end", tick, size_of_text))
+    x0, y1 = x0 - 2.2 * size_of_text, y1 + 1.8 * size_of_text
+    return (f'<svg viewBox="{x0:.2f} {y0} {x1 - x0:.2f} {y1 - y0:.2f}" preserveAspectRatio="none" style="aspect-ratio:{ratio:.3f};'
             f'width:min(100%,{rem * ratio:.2f}rem)" role="img" aria-label="cells {x0} to {x1 - 1}, {y0} to {y1 - 1}">'
             f'{"".join(parts)}</svg>')
 
@@ -190,4 +231,4 @@ def array_picture(deadlock, width, height):
     since = f"; it stands since cycle {formed}" if isinstance(formed, (int, float)) else ""
     part = f"; the larger picture: x from {near[0]} to {near[2] - 1}, y from {near[1]} to {near[3] - 1}" if zoomed else ""
     return (f'<figure class="knot"><div>{"".join(pictures)}</div><figcaption>{html.escape(what)}: {len(cells)} of '
-            f'{width * height} cells{waits}{since}{part}.</figcaption></figure>')
+            f'{width * height} cells{waits}{since}{part}.</figcaption>{LEGEND}</figure>')

@@ -41,8 +41,12 @@ SHADES = 256
 
 
 def palette():
-    """The 256 shades, as bytes."""
-    anchors = [[int(c[i:i + 2], 16) for i in (0, 2, 4)] for c in VIRIDIS]
+    """The 256 shades of the maps, as bytes."""
+    return palette_between([[int(c[i:i + 2], 16) for i in (0, 2, 4)] for c in VIRIDIS])
+
+
+def palette_between(anchors):
+    """256 shades, as bytes, evenly between these colours."""
     shades = bytearray()
     for i in range(SHADES):
         at = i * (len(anchors) - 1) / (SHADES - 1)
@@ -76,13 +80,13 @@ def data_uri(png):
     return "data:image/png;base64," + base64.b64encode(png).decode()
 
 
-def indexed_png(width, height, shades):
-    """A PNG of bytes, each an index into the palette."""
+def indexed_png(width, height, shades, colours):
+    """A PNG of bytes, each an index into the palette `colours`."""
     def chunk(kind, body):
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
     rows = b"".join(b"\0" + shades[y * width:(y + 1) * width] for y in range(height))
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)) +
-            chunk(b"PLTE", palette()) + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
+            chunk(b"PLTE", colours) + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 
 
 def number(value):
@@ -101,16 +105,17 @@ def shape(width, height, rem):
     return f"aspect-ratio:{ratio:.3f};width:min(100%,{rem * ratio:.2f}rem)"
 
 
-def one_map(values, title, linear, width, height):
-    most = max(values)
+def one_map(values, title, linear, width, height, name, most=None):
+    """`name`: of the values among the page's data. `most`: the scale's end, if it is not their maximum."""
+    most = most or max(values)
     power = 1.0 if linear else 0.5
     shades = bytes(int((v / most) ** power * (SHADES - 1) + 0.5) for v in values)
     hottest = max(range(len(values)), key=values.__getitem__)
     ticks = "".join(f"<span>{number((i / 4) ** (1 / power) * most)}</span>" for i in range(5))
-    picture = data_uri(indexed_png(width, height, shades))
+    picture = data_uri(indexed_png(width, height, shades, palette()))
     facts = f"most at ({hottest % width}, {hottest // width}), mean {number(sum(values) / len(values))}"
     return (f'<figure class="map"><figcaption>{html.escape(title)}</figcaption>'
-            f'<img src="{picture}" style="{shape(width, height, 18)}" alt="map of {html.escape(title)}, 0 to '
+            f'<img data-map="{name}" src="{picture}" style="{shape(width, height, 18)}" alt="map of {html.escape(title)}, 0 to '
             f'{number(most)}"><div class="bar"></div><div class="ticks">{ticks}</div>'
             f'<p>{facts}</p></figure>')
 
@@ -122,7 +127,7 @@ def sections(cells, width, height):
         there = [(c, t, linear) for c, t, linear in maps if c in cells]
         if not there:
             continue
-        shown = [one_map(cells[c], t, linear, width, height) for c, t, linear in there if max(cells[c]) > 0]
+        shown = [one_map(cells[c], t, linear, width, height, c) for c, t, linear in there if max(cells[c]) > 0]
         empty = [t for c, t, _ in there if max(cells[c]) <= 0]
         text.append(f"<section><h2>{name}</h2><p>{meaning}</p>")
         if shown:

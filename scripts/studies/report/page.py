@@ -8,6 +8,7 @@ import sys
 
 from studies.report import charts as report_charts
 from studies.report import maps as report_maps
+from studies.report import pair, recorded
 from studies.report.maps import number
 
 CAUSES = [
@@ -28,57 +29,13 @@ VERDICTS = {
     "capacity": "voxels did not fit --voxel-capacity",
 }
 REPORT_LINES_SHOWN = 12
+FOLDER = pathlib.Path(__file__).parent
 
-STYLE = """
-:root { color-scheme: light dark; --paper: #fcfcfb; --card: #f1f1ee; --ink: #1b1b19; --soft: #63635d; --line: #d9d9d3;
-  --accent: #2a6fbb; --area: #2a6fbb26; --good: #1d7a3e; --bad: #b3261e; }
-@media (prefers-color-scheme: dark) { :root { --paper: #161614; --card: #22221f; --ink: #ecece6; --soft: #a5a59c;
-  --line: #3a3a35; --accent: #7fb2ec; --area: #7fb2ec2e; --good: #6fcf8f; --bad: #ff8a80; } }
-* { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 75rem; padding: 1.2rem; background: var(--paper); color: var(--ink);
-  font: 15px/1.5 system-ui, sans-serif; overflow-wrap: anywhere; }
-h1 { font-size: 1.5rem; line-height: 1.2; margin: 0; } h2 { font-size: 1.15rem; margin: 2.2rem 0 .3rem; }
-p { margin: .3rem 0 .7rem; max-width: 46rem; } section > p, .note, figcaption, .map p { color: var(--soft); }
-figure { margin: 0; } figcaption { font-size: .87rem; margin: .2rem 0; }
-.head { display: grid; grid-template-columns: minmax(0, 22rem) minmax(0, 1fr); gap: 1.4rem; margin-top: 1.1rem; }
-.head img { width: 100%; image-rendering: pixelated; display: block; }
-.verdict { font-size: 1.25rem; font-weight: 650; color: var(--bad); } .verdict.completed { color: var(--good); }
-dl { display: grid; grid-template-columns: repeat(auto-fill, minmax(9.5rem, 1fr)); gap: .5rem; margin: .8rem 0 0; }
-dl div { background: var(--card); border-radius: .4rem; padding: .45rem .65rem; }
-dt { color: var(--soft); font-size: .8rem; } dd { margin: 0; font-size: 1.05rem; font-variant-numeric: tabular-nums; }
-dd small { color: var(--soft); font-size: .8rem; display: block; line-height: 1.35; }
-.maps { display: grid; grid-template-columns: repeat(auto-fill, minmax(13.5rem, 1fr)); gap: 1.1rem; }
-.map figcaption { color: var(--ink); } .map p { font-size: .8rem; margin: 0; }
-.map img { width: 100%; display: block; image-rendering: pixelated; }
-.bar { height: .5rem; margin-top: .3rem; background: BAR; }
-.ticks { display: flex; justify-content: space-between; font-size: .75rem; font-variant-numeric: tabular-nums; }
-.charts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(16rem, 100%), 1fr)); gap: .6rem 1rem; }
-svg { display: block; width: 100%; } .chart figcaption { color: var(--ink); }
-svg text { font: 11px system-ui, sans-serif; fill: var(--soft); } svg text.mark { fill: var(--bad); }
-.grid { stroke: var(--line); stroke-width: 1; } .area { fill: var(--area); }
-.line { fill: none; stroke: var(--accent); stroke-width: 1.6; }
-.mark { stroke: var(--bad); stroke-width: 1; stroke-dasharray: 3 3; } text.mark { stroke: none; }
-.knot { max-width: 46rem; margin: .5rem 0; } .knot > div { display: flex; flex-wrap: wrap; gap: 1rem; }
-.field { fill: var(--card); stroke: var(--soft); stroke-width: .05; }
-.cells { stroke: var(--line); stroke-width: .04; fill: none; } .stuck { fill: var(--bad); fill-opacity: .38; }
-.edge { stroke: var(--bad); stroke-width: .09; fill: none; }
-table { border-collapse: collapse; font-size: .87rem; } th { text-align: left; color: var(--soft); font-weight: 500; }
-td, th { padding: .2rem .8rem .2rem 0; vertical-align: top; border-bottom: 1px solid var(--line); }
-td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-td.word { white-space: nowrap; } 
-.share { display: block; height: .55rem; margin-top: .4rem; background: var(--accent); }
-.scroll { overflow-x: auto; } .config { columns: 19rem; column-gap: 2rem; }
-.config div { display: flex; justify-content: space-between; gap: 1rem; border-bottom: 1px solid var(--line);
-  font-size: .87rem; break-inside: avoid; } .config b { font-weight: 400; color: var(--soft); }
-.config span { text-align: right; } pre { font-size: .8rem; white-space: pre-wrap; margin: .4rem 0; }
-@media (max-width: 44rem) { body { padding: .8rem; } .head { grid-template-columns: minmax(0, 1fr); }
-  .maps { grid-template-columns: repeat(2, minmax(0, 1fr)); gap: .8rem; } }
-@media print { :root { --paper: #fff; --card: #f4f4f2; --ink: #000; --soft: #444; --line: #ccc; --accent: #1f5f9f;
-  --area: #1f5f9f26; --good: #175f31; --bad: #9c1f18; } body { font-size: 10.5pt; max-width: none; }
-  * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } figure, tr, dl div { break-inside: avoid; }
-  h2 { break-after: avoid; } .maps { grid-template-columns: repeat(4, 1fr); } .ticks { font-size: .65rem; }
-  .charts { grid-template-columns: repeat(2, 1fr); } }
-""".replace("BAR", report_maps.bar_style())
+STYLE = (FOLDER / "page.css").read_text().replace("BAR", report_maps.bar_style())
+
+
+SCRIPTLESS = ("<noscript><p class=note>Values under the pointer, the film and the rays of a pixel need "
+              "JavaScript.</p></noscript>")
 
 
 class Failure(Exception):
@@ -206,13 +163,9 @@ def deadlock_part(report, width, height):
 
 
 def configuration(config):
-    def shown(value):
-        if isinstance(value, list):
-            return ", ".join(map(str, value)) or "none"
-        return str(value).lower() if isinstance(value, bool) else str(value)
-    rows = "".join(f"<div><b>{text(k)}</b><span>{text(shown(v)) or '–'}</span></div>"
+    rows = "".join(f"<div><b>{text(k)}</b><span>{text(pair.option_text(v)) or '–'}</span></div>"
                    for k, v in config.items() if k != "cost")
-    cost = f"<p>cost: {text(shown(config['cost']))}</p>" if "cost" in config else ""
+    cost = f"<p>cost: {text(pair.option_text(config['cost']))}</p>" if "cost" in config else ""
     return f'<section><h2>Configuration</h2><div class="config">{rows}</div>{cost}</section>'
 
 
@@ -223,35 +176,75 @@ def beside(path, suffix):
     return file if file.is_file() else None
 
 
-def picture_part(path, width, height):
+def picture_part(path, width, height, name="picture"):
     file = beside(path, ".png")
     if not file:
         return "<p class=note>The picture is missing beside the JSON.</p>"
-    return (f'<figure><img src="{report_maps.data_uri(file.read_bytes())}" style="'
-            f'{report_maps.shape(width, height, 24)}" alt="the picture">'
-            f"<figcaption>{width} × {height} cells</figcaption></figure>")
+    lines = (f'<svg id="ray-lines" viewBox="0 0 {width} {height}" preserveAspectRatio="none" aria-hidden="true"></svg>'
+             if name == "picture" else "")
+    shape = report_maps.shape(width, height, 24)
+    return (f'<figure><div class="picture" style="{shape}"><img id="{name}" src="{report_maps.data_uri(file.read_bytes())}" '
+            f'style="{shape}" alt="the picture">{lines}</div><figcaption>{width} × {height} cells</figcaption></figure>')
+
+
+def truth_part(path, report):
+    """Picture, truth and their difference, if the run has a truth."""
+    files = [(name, beside(path, suffix)) for name, suffix in (
+        ("the machine's picture", ".png"), ("the truth", ".truth.png"), ("their difference, 8 times as large", ".difference.png"))]
+    if "accuracy" not in report or not all(file for _, file in files):
+        return ""
+    a = report["accuracy"]
+    rows = [("PSNR", f"{a['psnr_db']:.2f} dB"), ("SSIM", f"{a['ssim']:.5f}"), ("FLIP", f"{a['flip']:.5f}"),
+            ("relative MSE", f"{a['relative_mse']:.3g}"), ("largest error", f"{a['max_error']:.4f}"),
+            ("other first hit", f"{a['wrong_hit_percent']:.3g} % of the pixels")]
+    figures = "".join(f'<figure><img src="{report_maps.data_uri(file.read_bytes())}" alt="{text(name)}">'
+                      f"<figcaption>{text(name)}</figcaption></figure>" for name, file in files)
+    return (f'<section><h2>Against the truth</h2><div class="three">{figures}</div>'
+            f"<dl>{''.join(tile(n, v) for n, v in rows)}</dl></section>")
+
+
+def blocks_of(film):
+    return film["columns"], film["rows"]
+
+
+def recordings(path, width, height):
+    """The run's film, its rays, and the number of pixels whose rays are in the page (None: all)."""
+    film, rays, limit = None, None, None
+    for suffix in (".film.json", ".rays.csv"):
+        file = beside(path, suffix)
+        try:
+            if file and suffix == ".film.json":
+                film = recorded.read_film(file, width, height)
+            elif file:
+                rays, limit = recorded.read_rays(file, width)
+        except (OSError, ValueError) as error:
+            raise Failure(f"{file}: not this run's recording ({error})") from error
+    return film, rays, limit
+
+
+def shown_maps(cells):
+    """The columns of the cells' table that have a map, as the page's script reads them."""
+    return {c: [int(v) if v == int(v) else v for v in cells[c]]
+            for _, _, maps in report_maps.GROUPS for c, _, _ in maps if c in cells}
 
 
 def page(path):
     report, width, height = read_run(path)
     config, verdict = report["config"], report["verdict"]
     scene = pathlib.PurePath(str(config.get("scene", ""))).name
-    file = beside(path, ".cells.csv")
-    try:
-        cells = report_maps.read_cells(file, width, height) if file else {}
-    except (OSError, ValueError) as error:
-        raise Failure(f"{file}: not this run's cells ({error})") from error
+    cells = cells_of(path, width, height)
     hashes = report.get("hash", {})
+    film, rays, limit = recordings(path, width, height)
     engine = "" if report["cycles"]["total"] else " The untimed engine has no cycles, buffers or waiting."
     parts = [
-        '<!doctype html><html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f"<title>{text(scene)}, {width}x{height}: {text(verdict)}</title><style>{STYLE}</style></head><body>",
+        opening(f"{scene}, {width}x{height}: {verdict}"),
         f"<h1>{text(scene)} in {width} × {height} cells</h1>",
         f'<div class="head">{picture_part(path, width, height)}<div>',
         f'<div class="verdict {text(verdict)}">{text(verdict)}</div><p>{text(VERDICTS.get(verdict, ""))}.{engine}</p>',
-        key_figures(report), "</div></div>", deadlock_part(report, width, height)]
-    charts = report_charts.activity(report, width * height)
+        key_figures(report), "</div></div>", truth_part(path, report),
+        recorded.rays_part(rays, limit, width, height), deadlock_part(report, width, height),
+        recorded.film_part(film, report_maps.shape(*blocks_of(film), 18) if film else "")]
+    charts = report_charts.activity([report], width * height)
     if charts:
         each = plain(report["activity"]["bucket_cycles"])
         parts.append("<section><h2>Activity over time</h2><p>Over precast and trace, and for the loading apart: means "
@@ -261,8 +254,47 @@ def page(path):
                  "<p class=note>The maps are missing: there is no .cells.csv beside the JSON.</p>")
     parts.append(configuration(config))
     parts.append(f"<p class=note>hash.image {text(hashes.get('image', ''))}, hash.schedule "
-                 f"{text(hashes.get('schedule', ''))}</p></body></html>\n")
+                 f"{text(hashes.get('schedule', ''))}</p>")
+    parts.append(closing({"width": width, "height": height, "maps": shown_maps(cells), "film": film, "rays": rays}))
     return "\n".join(parts)
+
+
+def opening(title):
+    return ('<!doctype html><html lang="en"><head><meta charset="utf-8">'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">'
+            f"<title>{text(title)}</title><style>{STYLE}</style></head><body>")
+
+
+def closing(data):
+    """The page's data and its script."""
+    return (f"{SCRIPTLESS}{recorded.embedded(data)}<script>{(FOLDER / 'page.js').read_text()}</script></body></html>\n")
+
+
+def cells_of(path, width, height):
+    """The columns of the run's cells, empty without a file."""
+    file = beside(path, ".cells.csv")
+    try:
+        return report_maps.read_cells(file, width, height) if file else {}
+    except (OSError, ValueError) as error:
+        raise Failure(f"{file}: not this run's cells ({error})") from error
+
+
+def page_of_two(first, second):
+    """The page of two runs in arrays of one size."""
+    runs = [read_run(path) for path in (first, second)]
+    (a, width, height), (b, *size) = runs
+    if size != [width, height]:
+        raise Failure(f"{second}: {size[0]} x {size[1]} cells; expected {width} x {height} as in {first}")
+    cells = [cells_of(path, width, height) for path in (first, second)]
+    files = [beside(path, ".png") for path in (first, second)]
+    drawn, values = pair.maps(cells, width, height) if all(cells) else (
+        "<p class=note>The maps are missing: there is no .cells.csv beside both JSONs.</p>", {})
+    images = [report_maps.data_uri(f.read_bytes()) if f else None for f in files]
+    return "\n".join([
+        opening(f"{first} and {second}"), f"<h1>Two runs in {width} × {height} cells</h1>",
+        f"<p>First: {text(first)}. Second: {text(second)}.</p>", pair.pictures(images, width, height),
+        f"<section><h2>What differs</h2>{pair.settings(a, b)}{pair.figures(a, b)}</section>",
+        pair.charts(a, b, width * height), drawn, closing({"width": width, "height": height, "maps": values})])
 
 
 def write(path, content):
@@ -277,18 +309,26 @@ def write(path, content):
         raise Failure(f"{path}: can't be written ({error.strerror})") from error
 
 
+def target_of(run, other):
+    """Where the page goes: beside the run."""
+    stem = run.removesuffix(".json")
+    return f"{stem}.and.{pathlib.PurePath(other).stem}.html" if other else stem + ".html"
+
+
 def main(_root, words):
     parser = argparse.ArgumentParser(prog="scripts/study report", description="Makes a page of a run: one HTML file.")
     parser.add_argument("run", metavar="RUN.json",
-                        help="what raycell render wrote; RUN.png and RUN.cells.csv lie beside it")
-    parser.add_argument("-o", "--output", metavar="FILE.html", help="default: RUN.html")
+                        help="what raycell render or deadlock_tb wrote; RUN.png, RUN.cells.csv and so on lie beside it")
+    parser.add_argument("other", metavar="OTHER.json", nargs="?", help="a second run in an array of the same size: the page "
+                        "shows both and what differs")
+    parser.add_argument("-o", "--output", metavar="FILE.html", help="default: RUN.html; of two runs RUN.and.OTHER.html")
     try:
         options = parser.parse_args(words)
     except SystemExit as end:
         return 1 if end.code else 0
-    target = options.output or (options.run[:-5] if options.run.endswith(".json") else options.run) + ".html"
+    target = options.output or target_of(options.run, options.other)
     try:
-        write(target, page(options.run))
+        write(target, page_of_two(options.run, options.other) if options.other else page(options.run))
     except (KeyError, TypeError, IndexError) as error:
         print(f"study report: {options.run}: not a run's JSON; missing or of another kind: {error}", file=sys.stderr)
         return 1

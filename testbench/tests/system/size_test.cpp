@@ -262,6 +262,19 @@ void expect_refused(const Words& words, const std::string& part) {
     EXPECT_EQ(workshop.results(), std::vector<std::string>());
 }
 
+TEST(Size, OnATerminalItShowsHowFarItIs) {
+    const Workshop workshop;
+    Running running(
+        workshop, RAYCELL_PROGRAM,
+        {"size", own_scene("cornell.nff").string(), "--cells", "8x8", "--psnr", "35", "-o", "results/s"});
+    for (const std::string words :
+         {"size: step 1 of 4, hit tests; run ", "size: step 2 of 4, normals and shadows; run ",
+          "size: step 3 of 4, word lengths 1 of ", "trace"}) {
+        EXPECT_TRUE(running.says(words)) << words;
+    }
+    EXPECT_EQ(running.finish().exit_code, 0);
+}
+
 TEST(Size, GoalsThatCannotBeAreRefused) {
     const std::string scene = own_scene("cornell.nff").string();
     expect_refused({scene, "-o", "results/s"}, "no goal given");

@@ -247,9 +247,9 @@ TEST(Watch, RefusesWhatIsNotThereOrHasNoTime) {
         {{"--watch-pixel", "3..16,0"}, "no pixel (16, 0)"},
         {{"--watch-pixel", "3"}, "expected X,Y"},
         {{"--watch-ray", "256/0"}, "no pixel 256"},
-        {{"--watch-ray", "17"}, "expected PIXEL/PART"},
-        {{"--watch-ray", "17/4294967296"}, "expected PIXEL/PART"},
-        {{"--watch-ray", "-1/0"}, "expected PIXEL/PART"},
+        {{"--watch-ray", "17"}, "expected PIXEL/BRANCH"},
+        {{"--watch-ray", "17/4294967296"}, "expected PIXEL/BRANCH"},
+        {{"--watch-ray", "-1/0"}, "expected PIXEL/BRANCH"},
         {{"--watch-ray", "17/0", "--engine", "untimed"}, "expected --engine timed"},
         {{"--watch-pixel", "1,1", "--stage", "load"}, "expected --stage trace"}};
     for (const auto& [words, message] : wrong) {
