@@ -1,6 +1,8 @@
 #include "cells/deadlock/wait_graph.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 namespace raycell {
 
@@ -125,6 +127,25 @@ void WaitGraph::find_knots() {
     for (const auto& knot : knots_) {
         for (const Index i : knot) nodes_[i].state = State::knot;
     }
+}
+
+std::vector<WaitGraph::Index> WaitGraph::ring(const std::vector<Index>& knot) const {
+    // A node of a knot waits for one in it, so going on from node to node comes back to one seen before; but
+    // for one that waits for nothing that there is, which is a knot alone.
+    const std::set<Index> members(knot.begin(), knot.end());
+    std::vector<Index> path;
+    std::map<Index, std::size_t> seen;
+    Index at = knot.front();
+    while (seen.emplace(at, path.size()).second) {
+        path.push_back(at);
+        const auto& next = nodes_[at].waits_for;
+        const auto found =
+            std::find_if(next.begin(), next.end(), [&](Index other) { return members.count(other) > 0; });
+        if (found == next.end()) return {at};
+        at = *found;
+    }
+    path.erase(path.begin(), path.begin() + std::ptrdiff_t(seen.at(at)));
+    return path;
 }
 
 std::uint64_t WaitGraph::formed(const std::vector<Index>& knot) const {

@@ -47,6 +47,9 @@ class WaitGraph {
     void analyse();
     /// After analyse(): the knots, the one with the oldest node first. Each is a list of nodes, oldest first.
     const std::vector<std::vector<Index>>& knots() const { return knots_; }
+    /// Nodes of a knot each of which waits for the next one, and the last one for the first; a single node
+    /// where a knot has one that waits for none.
+    std::vector<Index> ring(const std::vector<Index>& knot) const;
     std::size_t tails() const { return tails_; }
     bool deadlocked() const { return !knots_.empty(); }
     /// Cycle since which a knot exists: nothing in it has moved since then.

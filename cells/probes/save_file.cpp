@@ -149,7 +149,7 @@ std::string gtkwave_save_file(const std::vector<VcdWriter::Declaration>& declara
     Writer writer("[*] raycell\n[dumpfile] \"" + name + ".vcd\"\n[savefile] \"" + name +
                       ".gtkw\"\n[timestart] " + std::to_string(view.from) +
                       "\n[size] 1600 900\n[pos] -1 -1\n*" + std::to_string(zoom) + " " +
-                      std::to_string(view.marker) + "\n[sst_expanded] 0\n[signals_width] 260\n",
+                      std::to_string(view.marker) + "\n[sst_expanded] 0\n[signals_width] 380\n",
                   quiet);
     writer.write(tree_of(declarations));
     return writer.text();

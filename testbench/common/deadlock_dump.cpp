@@ -144,8 +144,11 @@ std::string with_knot(std::string save, const std::vector<std::string>& buffers)
     if (buffers.empty()) return save;
     std::string group = "@800200\n-knot\n@820\n";  // GTKWave: a group begins; words, to the right
     for (const std::string& buffer : buffers) {
-        for (const char* signal : {"type", "ray", "stall"})
-            group += "raycell." + buffer + "." + signal + "\n";
+        // GTKWave shows what follows a name's last dot alone, so these have names of their own without dots.
+        std::string shown = buffer;
+        std::replace(shown.begin(), shown.end(), '.', ' ');
+        for (const std::string signal : {"type", "ray", "stall"})
+            group += "+{" + shown + ": " + signal + "} raycell." + buffer + "." + signal + "\n";
     }
     const auto first = save.find("@800200\n");
     save.insert(first == std::string::npos ? save.size() : first, group + "@1000200\n-knot\n");

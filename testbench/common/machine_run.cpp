@@ -110,6 +110,25 @@ void warn_of(const Bound& bound, const char* program) {
               << '\n';
 }
 
+namespace {
+
+/// The places of the oldest knot's ring: "(3, 4) -> (3, 5) -> (3, 4)".
+std::string ring_of(const WaitGraph& waits) {
+    constexpr std::size_t shown = 12;
+    const std::vector<WaitGraph::Index> ring = waits.ring(waits.knots().front());
+    std::string text;
+    for (std::size_t i = 0; i <= ring.size(); ++i) {
+        const WaitGraph::Node& node = waits.nodes()[ring[i % ring.size()]];
+        if (i > 0) text += " -> ";
+        if (i == shown && ring.size() > shown + 1)
+            return text + "... and back, " + std::to_string(ring.size()) + " places in all";
+        text += "(" + std::to_string(node.x) + ", " + std::to_string(node.y) + ")";
+    }
+    return text;
+}
+
+}  // namespace
+
 void explain(const RunResult& result, const Bound& bound, const char* program) {
     if (result.verdict == Verdict::completed) return;
     std::cerr << program << ": verdict " << name_of(result.verdict);
@@ -122,6 +141,8 @@ void explain(const RunResult& result, const Bound& bound, const char* program) {
     constexpr std::size_t shown = 10;
     for (std::size_t i = 0; i < result.report.size() && i < shown; ++i)
         std::cerr << "  " << result.report[i] << '\n';
+    if (result.waits.deadlocked())
+        std::cerr << "  in a ring, each waiting for the next: " << ring_of(result.waits) << '\n';
     if (result.report.size() > shown) {
         std::cerr << "  ... " << result.report.size() << " in all, see deadlock.report in the JSON\n";
     }

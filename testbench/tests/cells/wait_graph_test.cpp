@@ -125,6 +125,13 @@ TEST(WaitGraph, OfAnyShapeIsSortedAsASearchWithoutCleverness) {
         for (const auto& knot : b.graph.knots()) {
             EXPECT_EQ(knot_check::objection(nodes, {knot.begin(), knot.end()}), "");
             in_knots.insert(knot.begin(), knot.end());
+            const std::vector<Index> ring = b.graph.ring(knot);
+            for (std::size_t i = 0; i < ring.size(); ++i) {
+                const auto& targets = b.graph.nodes()[ring[i]].waits_for;
+                const Index next = ring[(i + 1) % ring.size()];
+                EXPECT_EQ(std::count(knot.begin(), knot.end(), ring[i]), 1);
+                EXPECT_TRUE(ring.size() == 1 || std::count(targets.begin(), targets.end(), next) > 0);
+            }
         }
         for (const std::size_t i : dead) {
             const std::set<std::size_t> reached = knot_check::reachable(nodes, dead, i);

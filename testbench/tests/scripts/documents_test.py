@@ -117,14 +117,16 @@ def missing_words(root, build):
             for option in re.findall(r"^  (?:-\w,)?(--[a-z][a-z-]*)", help_text, re.M):
                 if option not in options | {"--help"}:
                     yield f"option {option} of {' '.join(command)}"
-        runs = [("raycell", "render", root / "scenes/cornell.nff", "--cells", "16x16", "--truth", "--ray-store", "2"),
+        runs = [("raycell", "render", root / "scenes/cornell.nff", "--cells", "16x16", "--truth", "--ray-store", "2",
+                 "--film", "8", "--rays"),
                 ("raycell", "render", root / "scenes/facing_mirrors.nff", "--cells", "24x24", "--networks", "split"),
                 ("deadlock_tb", "--networks", "shared"), ("loading_tb", root / "scenes/cornell.nff", "--cells", "16x16")]
         for program, *rest in runs:
             run(build / program, *rest, "--quiet", "-o", "run")
-            for key, path in keys_of(json.loads(pathlib.Path(name, "run.json").read_text())):
-                if key not in words:
-                    yield f"key {path} of {program}"
+            for report in sorted(pathlib.Path(name).glob("run*.json")):
+                for key, path in keys_of(json.loads(report.read_text())):
+                    if key not in words:
+                        yield f"key {path} of {program}, {report.name}"
             for table in pathlib.Path(name).glob("run.*.csv"):
                 for column in table.read_text().split("\n", 1)[0].split(","):
                     if column not in words:

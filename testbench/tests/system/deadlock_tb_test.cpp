@@ -58,6 +58,7 @@ TEST(DeadlockTb, ShowsTheCellsOfADeadlockAsWaveformsThatOpenAtIt) {
         << save.substr(0, 300);
     // First of all the knot's buffers, so that they are in view.
     const Json& node = report.at("deadlock").at("knot").at("nodes").at(0);
+    EXPECT_TRUE(contains(save, "} raycell.cell_")) << "with names that tell their cell";
     const std::string input = "raycell.cell_" + node.at("x").dump() + "_" + node.at("y").dump() + "." +
                               node.at("side").get<std::string>() + ".all.stall";
     EXPECT_LT(save.find("-knot"), save.find("-cell_"));

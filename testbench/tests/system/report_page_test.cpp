@@ -84,7 +84,8 @@ TEST(ReportPage, DrawsAKnotsRing) {
         contains(page,
                  "The knot: 4 of 1024 cells, 4 waits between them, an arrow from who waits to what it waits "
                  "for; it stands since cycle 1234"));
-    EXPECT_EQ(count_of(page, "class=\"edge\""), 8u) << "in the array and, larger, beside it";
+    EXPECT_EQ(count_of(page, "class=\"edge\""), 9u)
+        << "in the array and, larger, beside it; one in the legend";
 }
 
 TEST(ReportPage, ShowsTheTruthAndTheRecordings) {
