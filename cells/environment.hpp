@@ -1,11 +1,14 @@
 // What all cells of an array share: settings, costs, pools, meters.
 #pragma once
 
+#include <optional>
+
 #include "cells/array_share.hpp"
 #include "cells/channels/message.hpp"
 #include "cells/clock/scheduler.hpp"
 #include "cells/meters/meters.hpp"
 #include "cells/units/time_out.hpp"
+#include "model/machine/wire.hpp"
 #include "model/picture/picture.hpp"
 
 namespace raycell {
@@ -40,6 +43,7 @@ struct CellConfig {
     /// Cycles from an answer's arrival until its cell must look at it; 0 where rays and answers share a
     /// buffer.
     int answer_routing;
+    std::optional<Wire> wire;  ///< with MachineSettings::wire_check
 
     /// `scene` and `traffic` (may be null) must outlive it; the settings are copied.
     CellConfig(const CellScene& scene, const PictureSettings& picture_settings,
@@ -67,6 +71,16 @@ struct Environment : CellConfig {
     bool draining = false;  ///< no cell sends new rays; a message left in a buffer at the end is deadlocked
     std::vector<WaitingRay> waiting;  ///< scratch of the cell that is running
 
+    /// With a wire check: a message that sets out is packed, and its receiver gets what unpacks, so that
+    /// nothing travels that is not in its bits. Its id stays, by which reports name it. Throws
+    /// std::runtime_error for what has no code.
+    void over_wire(RayPacket& packet) {
+        if (wire) pack_and_unpack(packet);
+    }
+    void over_wire(Answer& answer) {
+        if (wire) pack_and_unpack(answer);
+    }
+
     /// `part`: the rows that this process simulates; null: the whole array.
     Environment(const CellScene& scene, const PictureSettings& picture_settings,
                 const MachineSettings& machine_settings, Scheduler& s, Picture& p,
@@ -82,6 +96,12 @@ struct Environment : CellConfig {
     void count_hop(std::uint64_t ray) {
         if (phase == Phase::trace) ++meters.pixel_hops[pixel_of(ray)];
     }
+
+  private:
+    void pack_and_unpack(RayPacket& packet);
+    void pack_and_unpack(Answer& answer);
+    template <typename F>
+    auto checked(std::uint64_t ray, const F& unpacked);
 };
 
 }  // namespace raycell

@@ -19,6 +19,7 @@ void send_ray(RayPacket& packet, Out& out, Environment& environment, CellMeter& 
         cross(packet.ray, packet.visit.crossing, environment.context.arithmetic);
         packet.stage = RayPacket::Stage::untested;
     }
+    environment.over_wire(packet);
     ++packet.hops;
     meter.ray_left(environment.meters.counters, need.leaves);
     environment.count_hop(id);
@@ -31,6 +32,7 @@ void send_answer(Answer* answer, Out& out, Environment& environment, CellMeter& 
     const bool intensity = answer->kind == Answer::Kind::intensity;
     meter.answer_left(environment.meters.counters);
     environment.count_hop(answer->id);
+    environment.over_wire(*answer);
     out.send(environment.classes.answer, Message(answer),
              intensity ? environment.cycles.intensity : environment.cycles.verdict,
              environment.answer_routing);

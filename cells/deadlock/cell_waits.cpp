@@ -7,6 +7,11 @@ namespace {
 
 using Kind = WaitGraph::Kind;
 
+Wants with_text(const std::string& before, Wants wants) {
+    wants.text = before + wants.text;
+    return wants;
+}
+
 Cycle later(Cycle a, Cycle b) { return b == never ? a : std::max(a, b); }
 
 /// Builds one cell's part of the wait-for graph in the machine's `map`.
@@ -93,9 +98,14 @@ void CellWaits::add_places() {
 }
 
 Wants CellWaits::wants_output(Side side, int index) const {
+    const int x = cell_.x() + step_x(side);
+    const int y = cell_.y() + step_y(side);
+    const bool inside = x >= 0 && x < env_.width() && y >= 0 && y < env_.height();
+    const std::string where =
+        inside ? "cell (" + std::to_string(x) + ", " + std::to_string(y) + ")" : std::string("the exterior");
     return wants_buffer(
         map_, *cell_.output(side), index,
-        std::string("output ") + name_of(side) + " " + class_name(env_.machine.networks, index));
+        "room in " + where + ", output " + name_of(side) + " " + class_name(env_.machine.networks, index));
 }
 
 Wants CellWaits::wants_answer_way(const Answer& answer) const {
@@ -132,7 +142,8 @@ Wants CellWaits::wants_ray(const RayPacket& packet) const {
         case Need::Kind::output:
             return wants_output(packet.need.side, packet.need.index);
         case Need::Kind::response:
-            return wants_answer_way(answer_to(packet.ray, packet.need.answer));
+            return with_text("a way for its answer, since it has ended: ",
+                             wants_answer_way(answer_to(packet.ray, packet.need.answer)));
         case Need::Kind::slot:
             return wants_slot(packet.ray);
         case Need::Kind::shading_unit:

@@ -51,7 +51,8 @@ Bound bound_of(const Context& context, const MachineSettings& machine) {
     std::vector<std::string> options;
     if (rings) {
         const bool shared = machine.networks == Networks::shared;
-        reasons.push_back(shared ? "with --networks shared rays and answers can wait for each other in a ring"
+        reasons.push_back(shared ? "with --networks shared rays that turn, and rays and answers, can wait "
+                                   "for each other in a ring"
                                  : "with --networks split rays that turn can wait for each other in a ring");
         options.emplace_back("--networks half");
     }

@@ -19,21 +19,24 @@ Answer answer_to(const Ray& ray, Answer::Kind kind) {
     return answer;
 }
 
+int slot_address_bits(const PictureSettings& picture, const MachineSettings& machine) {
+    // A slot, or none (the pixel itself); verdicts on voxels name the voxel instead, up to 1024 in a cell.
+    const int slot = bits_for(machine.ray_store + 1);
+    return picture.shadows == Shadows::per_hit ? slot : std::max(slot, field::voxel_index);
+}
+
 MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
                          const Formats& formats) {
     const int word = formats.word_bits;
     const int home = bits_for(picture.width) + bits_for(picture.height);
-    // A slot, or none (the pixel itself); verdicts on voxels name the voxel instead, up to 1024 in a cell.
-    int slot = bits_for(machine.ray_store + 1);
-    if (picture.shadows != Shadows::per_hit) slot = std::max(slot, field::voxel_index);
-    const int address = home + slot + field::child;
+    const int address = home + slot_address_bits(picture, machine) + field::child;
     MessageBits bits;
     // Place, direction, the reciprocals of dx and dy (mantissas; their signs are the direction's).
-    const int place = 2 * word + formats.depth_word_bits();
+    const int place = 2 * word + wire_depth_bits(formats);
     const int way = place + 3 * word + 2 * (word + Formats::exponent_bits);
-    // A weight, or for a shadow ray the distance to its source; flags: fresh, outside, side left.
-    bits.ray = field::type + way + word + field::polygon_id + field::generation + address + 3;
-    bits.shadow_ray = field::type + way + word + field::polygon_id + address + 3;
+    // A weight, or for a shadow ray the distance to its source; whether it is outside the cube.
+    bits.ray = field::type + way + word + field::polygon_id + field::generation + address + 1;
+    bits.shadow_ray = field::type + way + word + field::polygon_id + address + 1;
     bits.intensity = field::type + 3 * word + address;
     bits.verdict = field::type + address;
     const int loading = formats.loading.bits();

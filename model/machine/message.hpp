@@ -40,6 +40,11 @@ struct MessageBits {
     int viewer = 0;
     int source = 0;
 };
+/// Bits of the slot, or of the voxel, that an answer is for.
+int slot_address_bits(const PictureSettings& picture, const MachineSettings& machine);
+/// Bits of a ray's depth. Outside the cube, on the way to the border, a ray is before it or behind it: so there
+/// are more of them than for a depth in a voxel.
+inline int wire_depth_bits(const Formats& formats) { return formats.depth.bits(); }
 MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
                          const Formats& formats);
 

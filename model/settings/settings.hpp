@@ -77,6 +77,7 @@ struct MachineSettings {
     int exterior_processors = 64;  ///< >= 1
     int exterior_latency = 200;    ///< cycles per ray handed to an exterior processor, >= 1
     std::uint64_t seed = 1;        ///< of the back-off's jitter and of random stalls
+    bool wire_check = false;       ///< rays and answers are packed and unpacked at every link
     /// Probability that a transfer over a link, or an operation of a unit, takes one more cycle; tried again
     /// after each.
     double stall = 0;

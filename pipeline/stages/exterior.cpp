@@ -93,7 +93,7 @@ void Exterior::begin(std::uint32_t number, std::uint32_t port, int index, Cycle 
     RayPacket* packet = border.from_cell->front(index).ray;
     const Ray& ray = packet->ray;
     const ExteriorRequest request =
-        exterior_request(env.context, ray, packet->visit.crossing, border.x, border.y);
+        exterior_request(env.context, ray, border_crossing(ray, env.context.arithmetic), border.x, border.y);
     processor = Processor();
     processor.busy = true;
     processor.port = port;
@@ -139,6 +139,7 @@ bool Exterior::answer(Processor& processor, Cycle now, Cycle& retry) {
     if (env.meters.observer) env.meters.observer->exterior_answered(port.x, port.y, now, processor.answer);
     Answer* answer = env.pools.answers.take();
     *answer = processor.answer;
+    env.over_wire(*answer);
     port.to_cell->send(env.classes.answer, Message(answer),
                        env.cycles_for(intensity ? env.bits.intensity : env.bits.verdict), env.answer_routing);
     ++env.meters.counters.rays_answered;

@@ -66,6 +66,14 @@ void check_memory(const RenderOptions& options) {
     }
 }
 
+void check_wires(const RenderOptions& options) {
+    if (!options.machine.wire_check) return;
+    if (options.engine == Engine::untimed)
+        throw UsageError("--wire-check: the untimed engine has no links; expected --engine timed");
+    if (options.picture.numbers.arithmetic == Numbers::exact)
+        throw UsageError("--wire-check: exact numbers are no words; expected --arithmetic fixed");
+}
+
 void check_granularity(const RenderOptions& options) {
     if (options.detail.empty()) return;
     if (options.engine == Engine::untimed)
@@ -104,6 +112,14 @@ int exit_code(Verdict verdict) {
     return exit_usage;
 }
 
+void tell_waveforms(const std::string& prefix) {
+    std::cout << "waveforms: " << prefix << ".vcd, to be opened with " << prefix << ".gtkw\n";
+}
+
+void tell_page(const std::string& prefix) {
+    std::cout << "page of the run: scripts/study report " << prefix << ".json\n";
+}
+
 void warn_of(const Bound& bound, const char* program) {
     if (bound.met()) return;
     std::cerr << program << ": warning: the run may end in a " << name_of(bound.may) << ": " << bound.advice()
@@ -114,15 +130,18 @@ namespace {
 
 /// The places of the oldest knot's ring: "(3, 4) -> (3, 5) -> (3, 4)".
 std::string ring_of(const WaitGraph& waits) {
-    constexpr std::size_t shown = 12;
+    constexpr std::size_t shown = 13;
     const std::vector<WaitGraph::Index> ring = waits.ring(waits.knots().front());
     std::string text;
+    std::string last;
+    std::size_t cells = 0;
     for (std::size_t i = 0; i <= ring.size(); ++i) {
         const WaitGraph::Node& node = waits.nodes()[ring[i % ring.size()]];
-        if (i > 0) text += " -> ";
-        if (i == shown && ring.size() > shown + 1)
-            return text + "... and back, " + std::to_string(ring.size()) + " places in all";
-        text += "(" + std::to_string(node.x) + ", " + std::to_string(node.y) + ")";
+        const std::string place = "(" + std::to_string(node.x) + ", " + std::to_string(node.y) + ")";
+        if (place == last) continue;  // two places of one cell
+        if (!last.empty()) text += " -> ";
+        if (++cells > shown) return text + "... and back, " + std::to_string(ring.size()) + " places in all";
+        text += last = place;
     }
     return text;
 }
@@ -141,8 +160,18 @@ void explain(const RunResult& result, const Bound& bound, const char* program) {
     constexpr std::size_t shown = 10;
     for (std::size_t i = 0; i < result.report.size() && i < shown; ++i)
         std::cerr << "  " << result.report[i] << '\n';
-    if (result.waits.deadlocked())
-        std::cerr << "  in a ring, each waiting for the next: " << ring_of(result.waits) << '\n';
+    if (result.waits.deadlocked()) {
+        const WaitGraph& waits = result.waits;
+        std::size_t places = 0;
+        for (const auto& knot : waits.knots()) places += knot.size();
+        const bool several = waits.knots().size() > 1;
+        std::cerr << "  " << (several ? "the oldest knot's ring" : "a ring")
+                  << ", each waiting for the next: " << ring_of(waits) << "\n  " << waits.knots().size()
+                  << (several ? " knots" : " knot") << " of " << places << " places, " << waits.tails()
+                  << " more wait for them; " << (several ? "the oldest stands" : "it stands")
+                  << " since cycle " << result.knot_formed << ", the last movement was in cycle "
+                  << result.ended << '\n';
+    }
     if (result.report.size() > shown) {
         std::cerr << "  ... " << result.report.size() << " in all, see deadlock.report in the JSON\n";
     }

@@ -396,6 +396,10 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
                  "cycles that one of them takes for a ray");
     table.group("Links and clock");
     table.number("seed", m.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1, "of the back-off's jitter");
+    table.flag(
+        "wire-check", m.wire_check,
+        "pack every ray and answer into its bits at every link and go on with what unpacks: the same picture "
+        "in the same cycles");
     table.group("Costs");
     table.costs(m.costs);
     table.group("Truth");

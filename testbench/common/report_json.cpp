@@ -166,6 +166,7 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
           {"in_flight", result.in_flight.answers}}},
         {"load",
          {{"sent", c.loads_sent}, {"delivered", c.loads_delivered}, {"in_flight", result.in_flight.loads}}}};
+    if (c.packed > 0) json["messages"]["packed"] = c.packed;
     json["voxels"] = {{"stored", storage.voxels},
                       {"max_per_cell", storage.max_voxels},
                       {"mean_per_occupied_cell",

@@ -142,6 +142,9 @@ int run(TrafficOptions& options, const OptionTable& table) {
         o.prefix.empty() || write_results(o, *machine, result, json, probes.get(), recording, outputs);
     explain(result, bound, "deadlock_tb");
     if (!o.quiet) summarise(json, options.traffic.seed);
+    const bool waveforms = probes || (o.probes.on_deadlock && whole && result.verdict == Verdict::deadlock);
+    if (!o.quiet && waveforms) tell_waveforms(o.prefix);
+    if (!o.quiet && !o.prefix.empty()) tell_page(o.prefix);
     if (!equal) std::cerr << "deadlock_tb: the picture is not that of the untimed machine\n";
     if (!equal) return exit_comparison;
     return whole ? exit_code(result.verdict) : int(exit_interrupted);

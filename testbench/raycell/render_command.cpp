@@ -308,13 +308,14 @@ void summarise(const RenderOptions& options, const Json& json, bool whole) {
     std::cout << "picture: " << options.prefix << ".png\n";
     const bool dumped = options.probes.on_deadlock && json["verdict"] == "deadlock" && whole;
     if (dumped || !options.probes.cells.empty()) {
-        std::cout << "waveforms: " << options.prefix << ".vcd, to be opened with " << options.prefix
-                  << ".gtkw\n";
+        tell_waveforms(options.prefix);
     }
+    tell_page(options.prefix);
 }
 
 int run(const RenderOptions& options, const OptionTable& table) {
     check_granularity(options);
+    check_wires(options);
     watch_of(options, std::cout);  // throws early for what can't be watched
     check_probes(options);
     check_recording(options);

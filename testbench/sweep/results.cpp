@@ -53,10 +53,14 @@ std::string safe_table(const SweepDesign& design, const std::vector<SweepMachine
     }
     std::vector<std::string> names;
     for (const std::size_t axis : others) names.push_back(design.axes[axis].option);
-    for (const char* name : {"smallest M that ended", "cycles (median)", "bits a cell"})
+    for (const char* name :
+         {"smallest M that ended", "runs of it", "cycles (median)", "bits a cell", "certain from M"})
         names.emplace_back(name);
     std::string text =
-        "\nThe smallest `--ray-store` (M) from which on every run of this sweep ended:\n\n" + head(names);
+        "\nThe smallest `--ray-store` (M) from which on every run of this sweep ended; and the smallest one "
+        "with "
+        "which any\nrun is certain to end, whatever its rays:\n\n" +
+        head(names);
     for (const auto& key : order) {
         std::vector<const SweepMachine*>& each = lines[key];
         std::stable_sort(each.begin(), each.end(), [&](const SweepMachine* a, const SweepMachine* b) {
@@ -67,12 +71,16 @@ std::string safe_table(const SweepDesign& design, const std::vector<SweepMachine
         while (safe != each.begin() && (*(safe - 1))->safe()) --safe;
         std::vector<std::string> cells = key;
         if (safe == each.end()) {
-            cells.insert(cells.end(), {"none", "", ""});
+            cells.insert(cells.end(), {"none", "", "", ""});
         } else {
             const SweepRow& row = *(*safe)->runs.front();
-            cells.insert(cells.end(),
-                         {row.point.values[m], grouped(*(*safe)->cycles()), grouped(row.cell_bits())});
+            cells.insert(cells.end(), {row.point.values[m], std::to_string((*safe)->runs.size()),
+                                       grouped(*(*safe)->cycles()), grouped(row.cell_bits())});
         }
+        const auto certain = std::find_if(each.begin(), each.end(), [](const SweepMachine* machine) {
+            return machine->runs.front()->certain;
+        });
+        cells.push_back(certain == each.end() ? "" : (*certain)->runs.front()->point.values[m]);
         text += line(cells);
     }
     return text;

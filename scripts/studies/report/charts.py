@@ -147,7 +147,8 @@ def knot_of(deadlock):
                 if ends[0] != ends[1]:
                     edges.append(tuple(ends))
         if cells:
-            return list(dict.fromkeys(cells)), list(dict.fromkeys(edges)), "The knot"
+            count = knot.get("knots", 1)
+            return list(dict.fromkeys(cells)), list(dict.fromkeys(edges)), "The knot" if count == 1 else f"{count} knots"
     places = []
     for line in deadlock.get("report", []):
         match = re.match(r"cell \((\d+), (\d+)\)", str(line))
@@ -228,7 +229,11 @@ def array_picture(deadlock, width, height):
         pictures.append(view(cells, edges, near, size, 20))
     waits = f", {len(edges)} waits between them, an arrow from who waits to what it waits for" if edges else ""
     formed = (deadlock.get("knot") or {}).get("formed")
-    since = f"; it stands since cycle {formed}" if isinstance(formed, (int, float)) else ""
-    part = f"; the larger picture: x from {near[0]} to {near[2] - 1}, y from {near[1]} to {near[3] - 1}" if zoomed else ""
+    several = what.endswith("knots")
+    since = f"; {'the oldest' if several else 'it'} stands since cycle {formed}" if isinstance(formed, (int, float)) else ""
+    tails = (deadlock.get("knot") or {}).get("tails")
+    since += f"; {tails} more places wait for {'them' if several else 'it'}" if tails else ""
+    x0, y0, x1, y1 = max(near[0], 0), max(near[1], 0), min(near[2], width) - 1, min(near[3], height) - 1
+    part = f"; the larger picture: x from {x0} to {x1}, y from {y0} to {y1}" if zoomed else ""
     return (f'<figure class="knot"><div>{"".join(pictures)}</div><figcaption>{html.escape(what)}: {len(cells)} of '
             f'{width * height} cells{waits}{since}{part}.</figcaption>{LEGEND}</figure>')

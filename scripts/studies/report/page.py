@@ -178,11 +178,12 @@ def beside(path, suffix):
 
 def picture_part(path, width, height, name="picture"):
     file = beside(path, ".png")
-    if not file:
-        return "<p class=note>The picture is missing beside the JSON.</p>"
     lines = (f'<svg id="ray-lines" viewBox="0 0 {width} {height}" preserveAspectRatio="none" aria-hidden="true"></svg>'
              if name == "picture" else "")
     shape = report_maps.shape(width, height, 24)
+    if not file:
+        return (f'<figure><div class="picture blank" id="{name}" style="{shape}">{lines}</div><figcaption>{width} × {height} '
+                f"cells, without a picture</figcaption></figure>")
     return (f'<figure><div class="picture" style="{shape}"><img id="{name}" src="{report_maps.data_uri(file.read_bytes())}" '
             f'style="{shape}" alt="the picture">{lines}</div><figcaption>{width} × {height} cells</figcaption></figure>')
 
@@ -231,7 +232,7 @@ def shown_maps(cells):
 def page(path):
     report, width, height = read_run(path)
     config, verdict = report["config"], report["verdict"]
-    scene = pathlib.PurePath(str(config.get("scene", ""))).name
+    scene = pathlib.PurePath(str(config.get("scene", ""))).name or "synthetic traffic"
     cells = cells_of(path, width, height)
     hashes = report.get("hash", {})
     film, rays, limit = recordings(path, width, height)

@@ -144,7 +144,7 @@ TEST(ReportPage, DoesWithoutPictureAndCells) {
     fs::remove(workshop.result("a.png"));
     fs::remove(workshop.result("a.cells.csv"));
     const std::string page = page_of(workshop);
-    EXPECT_TRUE(contains(page, "picture is missing"));
+    EXPECT_TRUE(contains(page, "without a picture"));
     EXPECT_TRUE(contains(page, "maps are missing"));
 }
 
