@@ -42,6 +42,7 @@ RenderOptions recorded_options(const GoldenFile& file) {
     RenderOptions ignored;
     OptionTable other_table(other);
     add_watch_options(other_table, ignored);
+    add_recording_options(other_table, ignored);
     add_array_options(other_table, ignored);
     add_probe_options(other_table, ignored);
     std::vector<std::string> words =

@@ -181,6 +181,7 @@ std::vector<std::string> with_configuration(const std::vector<std::string>& word
     add_scene_options(table, ignored);
     add_machine_options(table, ignored);
     add_watch_options(table, ignored);
+    add_recording_options(table, ignored);
     add_array_options(table, ignored);
     add_probe_options(table, ignored);
     std::vector<std::string> all = arguments_from_file(path, app, &render);

@@ -116,7 +116,7 @@ TEST(Interrupted, ATruthLeavesWhatWasThere) {
 TEST(Interrupted, ASearchForTheSmallestMachineLeavesWhatWasThere) {
     expect_no_files({"size", own_scene("still_life.nff").string(), "-o", "results/a", "--cells", "256x256",
                      "--psnr", "60"},
-                    "size: run");
+                    "size: step");
 }
 
 TEST(Interrupted, WhileTheTruthIsRenderedARunKeepsItsOwnResults) {
