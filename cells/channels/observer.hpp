@@ -47,6 +47,8 @@ class CellObserver {
     virtual void draining(bool /*on*/, Cycle /*now*/) {}
     /// An exterior processor's answer starts over the border into cell (x, y).
     virtual void exterior_answered(int /*x*/, int /*y*/, Cycle /*now*/, const Answer& /*answer*/) {}
+    /// A precast ray reached its source outside the array: it ends there without an answer.
+    virtual void exterior_silent(Cycle /*now*/, std::uint64_t /*ray*/) {}
 };
 
 class LinkObserver {

@@ -30,6 +30,9 @@ class CellObserverList : public CellObserver {
     void draining(bool on, Cycle now) override {
         for (CellObserver* member : members_) member->draining(on, now);
     }
+    void exterior_silent(Cycle now, std::uint64_t ray) override {
+        for (CellObserver* member : members_) member->exterior_silent(now, ray);
+    }
     void exterior_answered(int x, int y, Cycle now, const Answer& answer) override {
         for (CellObserver* member : members_) member->exterior_answered(x, y, now, answer);
     }

@@ -48,7 +48,6 @@ class Operators {
 
     const OperatorSettings& settings() const { return settings_; }
 
-  private:
     using Word = std::uint64_t;  ///< raw bits of a word, or of a double-length product
 
     /// A function as lines between words on its curve.
@@ -60,7 +59,12 @@ class Operators {
         std::vector<Line> lines;  ///< no more than there are arguments
         int rest_bits;            ///< of the argument, behind those that select the line
     };
+    /// 1/m over [1, 2), W - 1 fraction bits.
+    const Table& reciprocals() const { return reciprocals_; }
+    /// 1/sqrt(m) over [1, 2) (octave 0) and [2, 4) (octave 1).
+    const Table& roots(int octave) const { return roots_[octave]; }
 
+  private:
     template <class Curve>
     static Table tabulate(int size, int argument_bits, Curve curve);
     double signed_limit(double x) const;

@@ -130,6 +130,7 @@ bool Exterior::answer(Processor& processor, Cycle now, Cycle& retry) {
     Environment& env = environment();
     if (processor.silent) {
         ++env.meters.counters.rays_silent;
+        if (env.meters.observer) env.meters.observer->exterior_silent(now, processor.answer.id);
         env.meters.counters.last_progress = now;
         return true;
     }

@@ -84,6 +84,11 @@ void RayLives::from_exterior(RayLife& life) {
     ++life.answer_hops;
 }
 
+void RayLives::silent_outside(RayLife& life, Cycle now) {
+    life.end = RayLife::End::exterior;
+    life.ended = now;
+}
+
 std::vector<std::size_t> RayLives::in_order() const {
     std::vector<std::size_t> order(lives_.size());
     std::iota(order.begin(), order.end(), std::size_t(0));

@@ -55,6 +55,7 @@ class RayLives {
     /// Takes in an event of a ray that is in it.
     static void note(RayLife& life, const Cell& cell, Cycle now, CellEvent event, std::uint32_t detail);
     static void from_exterior(RayLife& life);
+    static void silent_outside(RayLife& life, Cycle now);
 
     const std::vector<RayLife>& all() const { return lives_; }
     /// Indices in the order of first launch, then home cell (row by row), then id: it does not depend on the

@@ -20,6 +20,10 @@ void RayTable::exterior_answered(int /*x*/, int /*y*/, Cycle /*now*/, const Answ
     if (RayLife* life = lives_.find(answer.id)) RayLives::from_exterior(*life);
 }
 
+void RayTable::exterior_silent(Cycle now, std::uint64_t ray) {
+    if (RayLife* life = lives_.find(ray)) RayLives::silent_outside(*life, now);
+}
+
 std::string RayTable::csv() const {
     std::string text =
         "ray,parent,kind,generation,home_x,home_y,end,end_x,end_y,launched,ended,hops,answer_hops,waited,"

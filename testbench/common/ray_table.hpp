@@ -16,6 +16,7 @@ class RayTable : public CellObserver {
     void launched(const Cell& cell, Cycle now, const Ray& ray, const Ray* parent) override;
     void stalled(const Cell& cell, Cycle now, std::uint64_t ray, Stall cause, Cycle cycles) override;
     void exterior_answered(int x, int y, Cycle now, const Answer& answer) override;
+    void exterior_silent(Cycle now, std::uint64_t ray) override;
 
     /// The file PREFIX.rays.csv, ordered by the cycle of the launch, then by home cell. docs/use/results.md
     /// describes the columns.

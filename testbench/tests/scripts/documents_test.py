@@ -112,7 +112,7 @@ def missing_words(root, build):
         def run(*command):
             return subprocess.run([str(w) for w in command], cwd=name, capture_output=True, text=True, check=False)
         for command in [("raycell", c) for c in ("render", "truth", "compare", "size", "sweep")] + [
-                ("deadlock_tb",), ("cell_tb",), ("loading_tb",)]:
+                ("deadlock_tb",), ("cell_tb",), ("loading_tb",), ("microcode_tb",)]:
             help_text = run(build / command[0], *command[1:], "--help").stdout
             for option in re.findall(r"^  (?:-\w,)?(--[a-z][a-z-]*)", help_text, re.M):
                 if option not in options | {"--help"}:

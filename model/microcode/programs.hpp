@@ -1,0 +1,55 @@
+// The microprograms of a cell, each for the function of the model that it equals bit for bit.
+#pragma once
+
+#include "model/microcode/program.hpp"
+#include "model/numbers/arithmetic.hpp"
+
+namespace raycell {
+
+/// A machine's numbers and its datapath.
+struct MicroSetting {
+    NumberSettings numbers;
+    ArrayExtent extent;
+    Datapath datapath;
+
+    Formats formats() const { return Formats(numbers.word_bits, numbers.rounding, extent); }
+};
+
+/// The widest operand of a multiplication: a distance, or a depth relative to a run.
+int widest_operand(const Formats& formats);
+
+// Registers are named as below; what a program reads is put there before, what it gives is there afterwards.
+
+/// next_crossing(), cross(), and whether the ray leaves the cube or reaches its source before. In and out: x,
+/// y, z, dx, dy, dz; mx, ex, my, ey (1/|d| = m · 2^e), reach. Out: t, side, flags (0; 1: leaves the cube; 2:
+/// axial, nothing else is set), left (reach − t, where reach is not infinite). `depth`: of the cube.
+MicroProgram walk_program(const MicroSetting& setting, double depth);
+
+/// Whether a voxel's depth run meets the ray's. In: near, far, low, high. Out: meets (0 or 1).
+MicroProgram run_program(const MicroSetting& setting);
+
+/// Whether a point is inside an edge, up to the hair. In: a, b, c, u, v (relative to the run's beginning).
+/// Out: inside (0 or 1).
+MicroProgram edge_program(const MicroSetting& setting);
+
+/// Operators::reciprocal() of an accumulator's word x other than 0. Out: r (negative for negative x) and
+/// exponent: 1/x = r · 2^exponent. Not for `rounded`: throws std::invalid_argument.
+MicroProgram reciprocal_program(const MicroSetting& setting);
+
+/// Operators::inverse_root() of a field's word x > 0. Out: r, exponent: 1/sqrt(x) = r · 2^exponent. Not for
+/// `rounded`.
+MicroProgram root_program(const MicroSetting& setting);
+
+/// Arithmetic::normalise() of a vector x, y, z of a field's words. Out: nx, ny, nz.
+MicroProgram normalise_program(const MicroSetting& setting);
+
+/// The normal at (u, v) of a field, normalised. In: bx to bz, ux to uz, vx to vz, u, v. Out: nx, ny, nz.
+MicroProgram normal_program(const MicroSetting& setting);
+
+/// reflect_direction(). In: dx to dz, nx to nz. Out: rx, ry, rz.
+MicroProgram reflect_program(const MicroSetting& setting);
+
+/// combine_intensity() of one channel. In: local, mirror, transmit, reflected, refracted. Out: sum.
+MicroProgram combine_program(const MicroSetting& setting);
+
+}  // namespace raycell

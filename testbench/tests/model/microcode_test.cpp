@@ -1,0 +1,121 @@
+// Microprograms against the functions of the model, bit for bit, and what runs them.
+#include <gtest/gtest.h>
+
+#include "../property.hpp"
+#include "testbench/microcode/trials.hpp"
+
+namespace raycell {
+namespace {
+
+class MicrocodeOf : public testing::TestWithParam<int> {};
+
+TEST_P(MicrocodeOf, EveryProgramEqualsTheModelOnEveryDatapath) {
+    MicroSetting setting;
+    setting.numbers.word_bits = GetParam();
+    setting.extent = {128, 100, 170.3, 0.25};
+    for (const Rounding rounding : {Rounding::nearest, Rounding::truncate}) {
+        for (const Iteration method : {Iteration::newton, Iteration::table}) {
+            setting.numbers.rounding = rounding;
+            setting.numbers.operators.reciprocal = setting.numbers.operators.root = method;
+            for (const Datapath& datapath : datapaths(GetParam(), widest_operand(setting.formats()))) {
+                setting.datapath = datapath;
+                for (const auto& trial : micro_trials(setting)) {
+                    for (const std::uint64_t seed : property::seeds(1, 4)) {
+                        SCOPED_TRACE(property::rerun(seed));
+                        const MicroTally tally = run_trial(*trial, 250, seed);
+                        EXPECT_GT(tally.least, 0);
+                    }
+                }
+            }
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Words, MicrocodeOf, testing::Values(8, 9, 12, 16, 20, 24, 27, 32),
+                         [](const auto& info) { return "of_" + std::to_string(info.param) + "_bits"; });
+
+TEST(Microcode, AProgramThatWasAlteredIsFoundOut) {
+    MicroSetting setting;
+    setting.extent = {128, 128, 200, 0.2};
+    setting.datapath = datapaths(20, widest_operand(setting.formats()))[0];
+    MicroProgram walk = walk_program(setting, 200);
+    ASSERT_GT(walk.instructions.size(), 20u);
+    // Every single shift that rounds matters: altered by one, some input shows it.
+    std::size_t roundings = 0;
+    for (std::size_t i = 0; i < walk.instructions.size(); ++i) {
+        if (walk.instructions[i].op != MicroInstruction::Op::round) continue;
+        ++roundings;
+        MicroProgram altered = walk;
+        ++altered.instructions[i].shift;
+        EXPECT_TRUE(walk_differs(setting, altered, 2000)) << "instruction " << i;
+    }
+    EXPECT_GE(roundings, 5u);
+    EXPECT_FALSE(walk_differs(setting, walk, 2000));
+}
+
+TEST(Microcode, OperandsWiderThanAMultiplierAreCutIntoParts) {
+    EXPECT_EQ(parts_of(20, 20), 1);
+    EXPECT_EQ(parts_of(21, 20), 2);
+    EXPECT_EQ(parts_of(39, 20), 2);
+    EXPECT_EQ(parts_of(40, 20), 3);
+    for (const std::uint64_t seed : property::seeds(1, 300)) {
+        SCOPED_TRACE(property::rerun(seed));
+        property::Random random(seed);
+        const Datapath path{"any", "", random.whole(1, 3), random.whole(4, 20), random.whole(4, 20)};
+        Assembler assembler("product", path, Rounding::nearest);
+        const int bits_a = random.whole(4, 30);
+        const int bits_b = random.whole(4, 30);
+        const RegisterIndex a = assembler.reg("a", bits_a, 0);
+        const RegisterIndex b = assembler.reg("b", bits_b, 0);
+        const RegisterIndex product = assembler.reg("product", 62, 0);
+        assembler.sum(product, Assembler::none, {{a, b}});
+        assembler.end();
+        const MicroProgram program = assembler.finish();
+        MicroMachine machine(program);
+        const auto any = [&](int bits) {
+            const std::int64_t most = (std::int64_t(1) << (bits - 1)) - 1;
+            return random.chance(0.2)   ? -most - 1
+                   : random.chance(0.2) ? most
+                                        : std::int64_t(random.uniform(-1, 1) * double(most));
+        };
+        const std::int64_t x = any(bits_a);
+        const std::int64_t y = any(bits_b);
+        machine.set(a, x);
+        machine.set(b, y);
+        const int cycles = machine.run();
+        EXPECT_EQ(machine.get(product), x * y);
+        EXPECT_EQ(cycles, 2 + (path.products(bits_a, bits_b) + path.multipliers - 1) / path.multipliers);
+    }
+}
+
+TEST(Microcode, AValueThatDoesNotFitItsRegisterIsAnError) {
+    Assembler assembler("sum", datapaths(20, 30)[0], Rounding::nearest);
+    const RegisterIndex a = assembler.reg("a", 8, 0);
+    assembler.add(a, a, a);
+    assembler.end();
+    const MicroProgram program = assembler.finish();
+    MicroMachine machine(program);
+    machine.set(a, 63);
+    EXPECT_EQ(machine.run(), 1);
+    EXPECT_EQ(machine.get(a), 126);
+    EXPECT_THROW(machine.run(), std::logic_error);
+    EXPECT_THROW(machine.set(a, 128), std::logic_error);
+    Assembler endless("endless", datapaths(20, 30)[0], Rounding::nearest);
+    endless.label("again");
+    endless.jump("again");
+    const MicroProgram loop = endless.finish();
+    EXPECT_THROW(MicroMachine(loop).run(), std::logic_error);
+    Assembler nowhere("nowhere", datapaths(20, 30)[0], Rounding::nearest);
+    nowhere.jump("there");
+    EXPECT_THROW(nowhere.finish(), std::logic_error);
+}
+
+TEST(Microcode, DigitByDigitThereIsNoProgram) {
+    MicroSetting setting;
+    setting.datapath = datapaths(20, 30)[0];
+    setting.numbers.operators.reciprocal = Iteration::rounded;
+    EXPECT_THROW(reciprocal_program(setting), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace raycell
