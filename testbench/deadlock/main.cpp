@@ -43,7 +43,7 @@ bool equals(const Picture& picture, const Picture& golden) {
 void summarise(const Json& json, std::uint64_t seed) {
     const Json& pixels = json["pixels"];
     std::cout << "verdict " << json["verdict"].get<std::string>() << " after " << json["cycles"]["trace"]
-              << " cycles, seed " << seed << "; " << pixels["completed"] << " of " << pixels["all"]
+              << " cycles of trace, seed " << seed << "; " << pixels["completed"] << " of " << pixels["all"]
               << " pixels, the untimed picture " << (json["equals_untimed"] ? "equal" : "DIFFERS") << '\n'
               << "ray store: peak " << json["ray_store"]["peak"] << " of " << json["ray_store"]["capacity"]
               << ", mean " << std::setprecision(3) << json["ray_store"]["mean"].get<double>()

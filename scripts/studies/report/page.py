@@ -99,7 +99,7 @@ def key_figures(report):
         for name, unit in report.get("units", {}).items():
             tiles.append(tile(f"{name} unit", percent(unit["utilisation"]), "of the cells' cycles"))
         for name, stage in report.get("stages", {}).items():
-            tiles.append(tile(name, percent(stage["utilisation"]), f"{plain(stage['items'])} items"))
+            tiles.append(tile(name, percent(stage["utilisation"]), f"of its cycles busy; {plain(stage['items'])} items"))
         store = report.get("ray_store", {})
         if store:
             tiles.append(tile("ray store", f"peak {store['peak']} of {store['capacity']}", f"mean {store['mean']:.3g}"))
@@ -107,7 +107,7 @@ def key_figures(report):
         if buffers.get("peak"):
             means = {k: v for k, v in buffers.get("mean", {}).items() if k != "load"}
             fullest = f"{max(means.values(), default=0):.2g}"
-            tiles.append(tile(f"mean in buffers of {buffers['depth']}", "up to " + fullest,
+            tiles.append(tile("messages in a buffer, mean", f"up to {fullest} of {buffers['depth']}",
                               ", ".join(f"{k} {v:.2g}" for k, v in means.items())))
         tiles.append(tile("rays postponed", plain(report["deadlock"].get("postponed", 0))))
     voxels = report.get("voxels", {})
@@ -280,6 +280,10 @@ def cells_of(path, width, height):
         raise Failure(f"{file}: not this run's cells ({error})") from error
 
 
+def stuck_of(report, which, width, height):
+    return deadlock_part(report, width, height).replace("What is stuck", f"What is stuck in the {which}", 1)
+
+
 def page_of_two(first, second):
     """The page of two runs in arrays of one size."""
     runs = [read_run(path) for path in (first, second)]
@@ -295,6 +299,7 @@ def page_of_two(first, second):
         opening(f"{first} and {second}"), f"<h1>Two runs in {width} × {height} cells</h1>",
         f"<p>First: {text(first)}. Second: {text(second)}.</p>", pair.pictures(images, width, height),
         f"<section><h2>What differs</h2>{pair.settings(a, b)}{pair.figures(a, b)}</section>",
+        *(stuck_of(run, which, width, height) for run, which in ((a, "first"), (b, "second"))),
         pair.charts(a, b, width * height), drawn, closing({"width": width, "height": height, "maps": values})])
 
 

@@ -129,6 +129,19 @@ TEST(ReportPage, ShowsTwoRunsBesideEachOther) {
     EXPECT_TRUE(contains(other.err, "12 x 13 cells; expected 12 x 12")) << other.err;
 }
 
+TEST(ReportPage, OfTwoRunsSaysWhatIsStuckInTheOneThatLocks) {
+    const Workshop workshop;
+    const Words mirrors = {"--cells", "24x24"};
+    workshop.report(own_scene("facing_mirrors.nff"), joined(mirrors, {"--networks", "split"}), 3);
+    workshop.report(own_scene("facing_mirrors.nff"), mirrors, 0, "b");
+    const Finished finished = workshop.run_program(script, {"report", "results/a.json", "results/b.json"});
+    ASSERT_EQ(finished.exit_code, 0) << finished.err;
+    const std::string page = read_text(workshop.result("a.and.b.html"));
+    EXPECT_TRUE(contains(page, "What is stuck in the first"));
+    EXPECT_FALSE(contains(page, "What is stuck in the second"));
+    EXPECT_TRUE(contains(page, "<code>--networks half</code>"));
+}
+
 TEST(ReportPage, DoesWithWhatAnUntimedRunKnows) {
     const Workshop workshop;
     workshop.report(own_scene("cornell.nff"), {"--cells", "8x8", "--engine", "untimed"});
