@@ -49,6 +49,17 @@ MicroProgram normal_program(const MicroSetting& setting);
 /// reflect_direction(). In: dx to dz, nx to nz. Out: rx, ry, rz.
 MicroProgram reflect_program(const MicroSetting& setting);
 
+/// refract_direction(). In: dx to dz, nx to nz, ior, entering (0 or 1). Out: total (1: totally reflected, and
+/// nothing else), rx, ry, rz.
+MicroProgram refract_program(const MicroSetting& setting);
+
+/// The place of a hit: point_at(). In: x, y, z, dx, dy, dz, t. Out: px, py, pz.
+MicroProgram point_program(const MicroSetting& setting);
+
+/// What a lit source adds in local_intensity(), whose highlight is known. In: cosine, kd, cx to cz (the object's
+/// colour), highlight, ix to iz (the source's intensity), sx to sz (the sum so far). Out: sx, sy, sz.
+MicroProgram light_program(const MicroSetting& setting);
+
 /// combine_intensity() of one channel. In: local, mirror, transmit, reflected, refracted. Out: sum.
 MicroProgram combine_program(const MicroSetting& setting);
 

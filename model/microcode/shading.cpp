@@ -100,6 +100,112 @@ MicroProgram reflect_program(const MicroSetting& setting) {
     return a.finish();
 }
 
+MicroProgram refract_program(const MicroSetting& setting) {
+    const Formats f = setting.formats();
+    const Format& field = f.field;
+    const int mantissa = f.word_bits - 1;
+    Assembler a("refract", setting.datapath, setting.numbers.rounding);
+    OperatorWriter operators(a, setting);
+    const auto reg = [&](const char* name, const Format& format) {
+        return a.reg(name, format.bits(), format.fraction_bits());
+    };
+    const Vector direction = vector(a, "d", f.unit);
+    const Vector normal = vector(a, "n", f.unit);
+    const RegisterIndex ior = reg("ior", f.ior);
+    const RegisterIndex entering = a.reg("entering", 2, 0);
+    const RegisterIndex total = a.reg("total", 2, 0);
+    const RegisterIndex eta = reg("eta", f.normal);
+    const RegisterIndex cosine = reg("cosine", f.unit);
+    const RegisterIndex sine = reg("squared sine", field);
+    const RegisterIndex eta_squared = reg("eta squared", field);
+    const RegisterIndex squared = a.reg("squared", field.bits() + 1, field.fraction_bits());
+    const RegisterIndex held = reg("held", f.unit);
+    const RegisterIndex root = reg("sqrt", f.unit);
+    const RegisterIndex across = reg("across", field);
+    const Vector way = vector(a, "way ", field);
+    const Vector out = vector(a, "r", f.unit);
+    const RegisterIndex zero = a.constant("0", 0, 2, f.unit.fraction_bits());
+    const RegisterIndex no = a.constant("no", 0, 2, 0);
+    const RegisterIndex yes = a.constant("yes", 1, 2, 0);
+    const RegisterIndex one =
+        a.constant("1", std::int64_t(1) << field.fraction_bits(), field.bits(), field.fraction_bits());
+
+    a.move(total, no);
+    a.jump_zero(entering, "leaving");
+    const OperatorWriter::Float inverse =
+        operators.reciprocal("eta", ior, f.ior.bits(), f.ior.fraction_bits());
+    a.scale(eta, inverse.mantissa, inverse.exponent, mantissa - f.normal.fraction_bits());
+    a.jump("bend");
+    a.label("leaving");
+    a.round(eta, ior);
+    a.label("bend");
+    a.sum(cosine, Assembler::none,
+          {{direction[0], normal[0]}, {direction[1], normal[1]}, {direction[2], normal[2]}});
+    a.subtract(cosine, zero, cosine);
+    a.sum(sine, one, {{cosine, cosine, true}});
+    a.sum(eta_squared, Assembler::none, {{eta, eta}});
+    a.sum(sine, Assembler::none, {{eta_squared, sine}});
+    a.subtract(squared, one, sine);
+    a.jump_negative(squared, "reflected");
+    a.move(root, zero);
+    a.jump_zero(squared, "grazes");
+    a.round(held, squared);
+    const OperatorWriter::Float inverse_root = operators.root("root", squared, field.fraction_bits());
+    a.sum(root, Assembler::none, {{held, inverse_root.mantissa}}, inverse_root.exponent);
+    a.subtract(root, zero, root);
+    a.label("grazes");
+    a.sum(across, root, {{eta, cosine}});
+    for (std::size_t i = 0; i < 3; ++i) {
+        a.sum(way[i], Assembler::none, {{eta, direction[i]}});
+        a.sum(way[i], way[i], {{across, normal[i]}});
+    }
+    operators.normalise("normalise", way, field.bits(), out);
+    a.end();
+    a.label("reflected");
+    a.move(total, yes);
+    a.end();
+    return a.finish();
+}
+
+MicroProgram point_program(const MicroSetting& setting) {
+    const Formats f = setting.formats();
+    Assembler a("point", setting.datapath, setting.numbers.rounding);
+    const RegisterIndex t = a.reg("t", f.distance.bits(), f.distance.fraction_bits());
+    for (const char axis : std::string("xyz")) {
+        const std::string name(1, axis);
+        const Format& format = axis == 'z' ? f.depth : f.unit;
+        const RegisterIndex place = a.reg(name, format.bits(), format.fraction_bits());
+        const RegisterIndex direction = a.reg("d" + name, f.unit.bits(), f.unit.fraction_bits());
+        const RegisterIndex point = a.reg("p" + name, format.bits(), format.fraction_bits());
+        a.sum(point, place, {{t, direction}});
+    }
+    a.end();
+    return a.finish();
+}
+
+MicroProgram light_program(const MicroSetting& setting) {
+    const Formats f = setting.formats();
+    Assembler a("light", setting.datapath, setting.numbers.rounding);
+    const auto reg = [&](const char* name, const Format& format) {
+        return a.reg(name, format.bits(), format.fraction_bits());
+    };
+    const RegisterIndex cosine = reg("cosine", f.unit);
+    const RegisterIndex kd = reg("kd", f.feature);
+    const Vector colour = vector(a, "c", f.feature);
+    const RegisterIndex highlight = reg("highlight", f.intensity);
+    const Vector intensity = vector(a, "i", f.intensity);
+    const Vector sum = vector(a, "s", f.intensity);
+    const RegisterIndex diffuse = reg("diffuse", f.unit);
+    const RegisterIndex share = reg("share", f.intensity);
+    a.sum(diffuse, Assembler::none, {{kd, cosine}});
+    for (std::size_t i = 0; i < 3; ++i) {
+        a.sum(share, highlight, {{diffuse, colour[i]}});
+        a.sum(sum[i], sum[i], {{intensity[i], share}});
+    }
+    a.end();
+    return a.finish();
+}
+
 MicroProgram combine_program(const MicroSetting& setting) {
     const Formats f = setting.formats();
     Assembler a("combine", setting.datapath, setting.numbers.rounding);

@@ -274,6 +274,92 @@ class ReflectTrial : public MicroTrial {
     ShadePoint point_;
 };
 
+class RefractTrial : public MicroTrial {
+  public:
+    RefractTrial(const MicroSetting& s, const CostTable& costs)
+        : MicroTrial(s, refract_program(s), "refract + reciprocal + 2 root",
+                     int(costs.refract + costs.reciprocal(s.numbers.operators) +
+                         2 * costs.root(s.numbers.operators))) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        point_.direction = any_direction(random, arithmetic_);
+        point_.normal = random.chance(0.1) ? -point_.direction : any_direction(random, arithmetic_);
+        if (glm::dot(point_.direction, point_.normal) > 0) point_.normal = -point_.normal;
+        point_.entering = random.chance(0.5);
+        ior_ = std::max(random.word(arithmetic_.formats().ior, 0, 3), arithmetic_.formats().ior.step());
+        put("d", point_.direction);
+        put("n", point_.normal);
+        put("ior", ior_);
+        put("entering", point_.entering ? 1 : 0);
+    }
+    void compare() override {
+        dvec3 wanted;
+        const bool passes = refract_direction(point_, ior_, wanted, arithmetic_);
+        expect("total", take("total"), passes ? 0 : 1);
+        if (passes) expect("r", wanted);
+    }
+    ShadePoint point_;
+    double ior_ = 1;
+};
+
+class PointTrial : public MicroTrial {
+  public:
+    PointTrial(const MicroSetting& s, const CostTable& costs)
+        : MicroTrial(s, point_program(s), "a part of shade_setup", int(costs.shade_setup)) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        const Formats& f = arithmetic_.formats();
+        ray_.direction = any_direction(random, arithmetic_);
+        ray_.position = {random.word(f.unit, 0, 1), random.word(f.unit, 0, 1), random.word(f.depth)};
+        t_ = random.word(f.distance, 0, f.distance.most());
+        put("", ray_.position);
+        put("d", ray_.direction);
+        put("t", t_);
+    }
+    void compare() override { expect("p", point_at(ray_, t_, arithmetic_)); }
+    Ray ray_;
+    double t_ = 0;
+};
+
+class LightTrial : public MicroTrial {
+  public:
+    LightTrial(const MicroSetting& s, const CostTable& costs)
+        : MicroTrial(s, light_program(s), "per_lit_source", int(costs.per_lit_source)) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        const Formats& f = arithmetic_.formats();
+        cosine_ = random.word(f.unit, 0, 1);
+        kd_ = random.word(f.feature, 0, 1);
+        highlight_ = random.word(f.intensity, 0, f.intensity.most());
+        for (int i = 0; i < 3; ++i) {
+            colour_[i] = random.word(f.feature, 0, f.feature.most());
+            intensity_[i] = random.word(f.intensity, 0, f.intensity.most());
+            sum_[i] = random.word(f.intensity, 0, f.intensity.most());
+        }
+        put("cosine", cosine_);
+        put("kd", kd_);
+        put("highlight", highlight_);
+        put("c", colour_);
+        put("i", intensity_);
+        put("s", sum_);
+    }
+    void compare() override {  // the last lines of local_intensity()
+        const Format& word = arithmetic_.formats().intensity;
+        const double diffuse = arithmetic_.product(arithmetic_.formats().unit, kd_, cosine_);
+        dvec3 wanted = sum_;
+        for (int i = 0; i < 3; ++i) {
+            const double share = arithmetic_.mac(word, highlight_, diffuse, colour_[i]);
+            wanted[i] = arithmetic_.mac(word, sum_[i], intensity_[i], share);
+        }
+        expect("s", wanted);
+    }
+    double cosine_ = 0, kd_ = 0, highlight_ = 0;
+    dvec3 colour_{0, 0, 0}, intensity_{0, 0, 0}, sum_{0, 0, 0};
+};
+
 class CombineTrial : public MicroTrial {
   public:
     CombineTrial(const MicroSetting& s, const CostTable& costs)
@@ -312,6 +398,9 @@ std::vector<std::unique_ptr<MicroTrial>> micro_trials(const MicroSetting& s) {
     all.push_back(std::make_unique<NormaliseTrial>(s, costs));
     all.push_back(std::make_unique<NormalTrial>(s, costs));
     all.push_back(std::make_unique<ReflectTrial>(s, costs));
+    all.push_back(std::make_unique<RefractTrial>(s, costs));
+    all.push_back(std::make_unique<PointTrial>(s, costs));
+    all.push_back(std::make_unique<LightTrial>(s, costs));
     all.push_back(std::make_unique<CombineTrial>(s, costs));
     return all;
 }
