@@ -12,10 +12,10 @@ namespace {
 
 using Op = MicroInstruction::Op;
 
-constexpr const char* op_names[] = {"constant", "move",      "add",           "subtract",  "least",
-                                    "most",     "load",      "take off",      "clear",     "absolute",
-                                    "count",    "low",       "table",         "multiply",  "round",
-                                    "jump",     "jump less", "jump negative", "jump zero", "end"};
+constexpr const char* op_names[] = {
+    "constant", "move",  "add",       "subtract",      "least",     "most",       "load",
+    "add to",   "clear", "absolute",  "count",         "low",       "table",      "multiply",
+    "round",    "jump",  "jump less", "jump negative", "jump zero", "jump minus", "end"};
 
 /// Bits of a two's complement word that holds the value.
 int bits_of(__int128 value) {
@@ -102,6 +102,7 @@ std::string MicroProgram::listing() const {
             case Op::jump_zero:
                 text += " " + reg(i.a) + " to " + std::to_string(i.to);
                 break;
+            case Op::jump_minus:
             case Op::jump:
                 text += " to " + std::to_string(i.to);
                 break;
@@ -197,7 +198,7 @@ int MicroMachine::run(int limit) {
                 accumulator_ = __int128(values_[i.a]) * (__int128(1) << i.shift);
                 break;
             case Op::take_off:
-                accumulator_ -= __int128(values_[i.a]) * (__int128(1) << i.shift);
+                accumulator_ += __int128(i.value) * values_[i.a] * (__int128(1) << i.shift);
                 break;
             case Op::clear:
                 accumulator_ = 0;
@@ -240,6 +241,9 @@ int MicroMachine::run(int limit) {
                 break;
             case Op::jump_negative:
                 if (values_[i.a] < 0) at = i.to;
+                break;
+            case Op::jump_minus:
+                if (accumulator_ < 0) at = i.to;
                 break;
             case Op::jump_zero:
                 if (values_[i.a] == 0) at = i.to;
@@ -391,6 +395,7 @@ void Assembler::difference(RegisterIndex target, RegisterIndex a, RegisterIndex 
     load.shift = fraction - r[a].fraction;
     MicroInstruction& off = emit(Op::take_off);
     off.a = b;
+    off.value = -1;
     off.shift = fraction - r[b].fraction;
     MicroInstruction& out = emit(Op::round);
     out.target = target;
@@ -462,6 +467,23 @@ void Assembler::jump_negative(RegisterIndex a, const std::string& to) {
 }
 
 void Assembler::jump_zero(RegisterIndex a, const std::string& to) { jump_to(Op::jump_zero, a, 0, to); }
+
+void Assembler::jump_sum_negative(const std::vector<Term>& terms, const std::string& to) {
+    const auto& r = program_.registers;
+    int fraction = r[terms.front().a].fraction;
+    for (const Term& term : terms) fraction = std::max(fraction, r[term.a].fraction);
+    // The accumulator is loaded with a term that is not subtracted.
+    std::vector<Term> order = terms;
+    std::stable_sort(order.begin(), order.end(),
+                     [](const Term& x, const Term& y) { return x.negative < y.negative; });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        MicroInstruction& part = emit(i == 0 ? Op::load : Op::take_off);
+        part.a = order[i].a;
+        part.value = order[i].negative ? -1 : 1;
+        part.shift = fraction - r[order[i].a].fraction;
+    }
+    jump_to(Op::jump_minus, 0, 0, to);
+}
 
 void Assembler::end() { emit(Op::end); }
 

@@ -30,7 +30,7 @@ struct MicroInstruction {
         least,      ///< target = the lesser of a and b
         most,       ///< target = the greater
         load,       ///< accumulator = a · 2^shift
-        take_off,   ///< accumulator −= a · 2^shift
+        take_off,   ///< accumulator += value · a · 2^shift; value is 1 or -1
         clear,      ///< accumulator = 0
         absolute,   ///< target = |a|
         count,      ///< target = −floor(log2(a)), a > 0
@@ -42,6 +42,7 @@ struct MicroInstruction {
         jump_less,  ///< to `to` if a < b
         jump_negative,  ///< to `to` if a < 0
         jump_zero,      ///< to `to` if a = 0
+        jump_minus,     ///< to `to` if the accumulator < 0
         end
     };
     struct Product {
@@ -170,6 +171,12 @@ class Assembler {
     void jump_less(RegisterIndex a, RegisterIndex b, const std::string& to);
     void jump_negative(RegisterIndex a, const std::string& to);
     void jump_zero(RegisterIndex a, const std::string& to);
+    /// To `to` if the sum of the terms is negative, however their last bits differ.
+    struct Term {
+        RegisterIndex a;
+        bool negative = false;
+    };
+    void jump_sum_negative(const std::vector<Term>& terms, const std::string& to);
     void end();
 
     /// Throws std::logic_error for a jump to nowhere.

@@ -28,6 +28,12 @@ MicroProgram walk_program(const MicroSetting& setting, double depth);
 /// Whether a voxel's depth run meets the ray's. In: near, far, low, high. Out: meets (0 or 1).
 MicroProgram run_program(const MicroSetting& setting);
 
+/// Where a ray meets a voxel's plane, and whether that is in the cell and in the voxel's run: hit_voxel() at
+/// rung `edge`, but for the edges. In: nx to nz, c (the plane, relative to the cell and to base), x to z, dx
+/// to dz, base, near, far, end (the ray's distance to the cell's side), leaves (0, or 1: it starts from a
+/// polygon, in this cell). Out: hit (0 or 1), t, px to pz (the place, for the edges).
+MicroProgram plane_program(const MicroSetting& setting);
+
 /// Whether a point is inside an edge, up to the hair. In: a, b, c, u, v (relative to the run's beginning).
 /// Out: inside (0 or 1).
 MicroProgram edge_program(const MicroSetting& setting);
@@ -56,8 +62,9 @@ MicroProgram refract_program(const MicroSetting& setting);
 /// The place of a hit: point_at(). In: x, y, z, dx, dy, dz, t. Out: px, py, pz.
 MicroProgram point_program(const MicroSetting& setting);
 
-/// What a lit source adds in local_intensity(), whose highlight is known. In: cosine, kd, cx to cz (the object's
-/// colour), highlight, ix to iz (the source's intensity), sx to sz (the sum so far). Out: sx, sy, sz.
+/// What a lit source adds in local_intensity(), whose highlight is known. In: cosine, kd, cx to cz (the
+/// object's colour), highlight, ix to iz (the source's intensity), sx to sz (the sum so far). Out: sx, sy,
+/// sz.
 MicroProgram light_program(const MicroSetting& setting);
 
 /// combine_intensity() of one channel. In: local, mirror, transmit, reflected, refracted. Out: sum.

@@ -1,8 +1,9 @@
 // Programs of the traversal unit: the walk, a voxel's depth run, an edge.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
-#include "model/microcode/programs.hpp"
+#include "model/microcode/operators.hpp"
 
 namespace raycell {
 namespace {
@@ -140,6 +141,98 @@ MicroProgram run_program(const MicroSetting& setting) {
     a.end();
     a.label("misses");
     a.move(meets, no);
+    a.end();
+    return a.finish();
+}
+
+MicroProgram plane_program(const MicroSetting& setting) {
+    const Formats f = setting.formats();
+    const int word = f.word_bits;
+    const int unit = f.unit.fraction_bits();
+    const int mantissa = word - 1;
+    Assembler a("plane", setting.datapath, setting.numbers.rounding);
+    OperatorWriter operators(a, setting);
+    const auto reg = [&](const std::string& name, const Format& format, int more = 0) {
+        return a.reg(name, format.bits() + more, format.fraction_bits());
+    };
+    std::array<RegisterIndex, 3> n{}, p{}, d{}, point{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string axis(1, "xyz"[i]);
+        n[i] = reg("n" + axis, f.unit);
+        p[i] = reg(axis, i == 2 ? f.depth : f.unit);
+        d[i] = reg("d" + axis, f.unit);
+        point[i] = reg("p" + axis, i == 2 ? f.depth : f.unit);
+    }
+    const RegisterIndex c = reg("c", f.offset);
+    const RegisterIndex base = reg("base", f.depth);
+    const RegisterIndex near = reg("near", f.depth);
+    const RegisterIndex far = reg("far", f.depth);
+    const RegisterIndex end = reg("end", f.distance);
+    const RegisterIndex leaves = a.reg("leaves", 2, 0);
+    const RegisterIndex hit = a.reg("hit", 2, 0);
+    const RegisterIndex t = reg("t", f.distance);
+    const RegisterIndex along = reg("along", f.accumulator);
+    const RegisterIndex size = reg("size", f.accumulator, 1);
+    const RegisterIndex inside = reg("z in the run", f.depth, 1);
+    const RegisterIndex off = reg("off", f.depth);
+    const RegisterIndex growth = a.reg("growth", word + 1, mantissa);
+    const RegisterIndex exponent = a.reg("exponent", 8, 0);
+    // The hair, 4 last bits of a unit word, grows with 1/along from 1 to 1024 times.
+    constexpr int most_growth = 10;  // bits
+    const RegisterIndex room = a.reg("room", word + 1 + most_growth, unit + mantissa - 2);
+    const RegisterIndex no = a.constant("no", 0, 2, 0);
+    const RegisterIndex yes = a.constant("yes", 1, 2, 0);
+    const RegisterIndex zero = a.constant("0", 0, 2, f.distance.fraction_bits());
+    const auto flat = std::int64_t(std::ceil(1e-12 / f.accumulator.step()));
+    const RegisterIndex in_plane =
+        a.constant("in the plane", flat, f.accumulator.bits(), f.accumulator.fraction_bits());
+    const RegisterIndex fresh = a.constant("least fresh", raw(64 * f.unit.step(), f.distance),
+                                           f.distance.bits(), f.distance.fraction_bits());
+    const RegisterIndex one = a.constant("1", std::int64_t(1) << mantissa, word + 1, mantissa);
+    const RegisterIndex none = a.constant("e 0", 0, 8, 0);
+    const RegisterIndex all = a.constant("e 10", most_growth, 8, 0);
+
+    a.move(hit, no);
+    a.sum(along, Assembler::none, {{n[0], d[0]}, {n[1], d[1]}, {n[2], d[2]}});
+    a.absolute(size, along);
+    a.jump_less(size, in_plane, "misses");
+    a.subtract(inside, p[2], base);
+    a.sum(off, c, {{p[0], n[0], true}, {p[1], n[1], true}, {inside, n[2], true}});
+    const OperatorWriter::Float inverse =
+        operators.reciprocal("1/along", along, f.accumulator.bits(), f.accumulator.fraction_bits());
+    a.jump_negative(along, "from behind");
+    a.sum(t, Assembler::none, {{off, inverse.mantissa}}, inverse.exponent);
+    a.jump("met");
+    a.label("from behind");
+    a.sum(t, Assembler::none, {{off, inverse.mantissa, true}}, inverse.exponent);
+    a.label("met");
+    a.move(growth, inverse.mantissa);
+    a.move(exponent, inverse.exponent);
+    a.jump_less(none, exponent, "grows");
+    a.move(growth, one);
+    a.move(exponent, none);
+    a.label("grows");
+    a.jump_less(exponent, all, "grows little");
+    a.jump_less(all, exponent, "grows most");
+    a.jump("grows little");
+    a.label("grows most");
+    a.move(growth, one);
+    a.move(exponent, all);
+    a.label("grows little");
+    a.scale(room, growth, exponent, 0);
+    a.jump_zero(leaves, "stays");
+    a.jump_less(t, fresh, "misses");
+    a.jump("side");
+    a.label("stays");
+    a.jump_sum_negative({{room}, {t}}, "misses");
+    a.label("side");
+    a.jump_sum_negative({{end}, {room}, {t, true}}, "misses");
+    for (std::size_t i = 0; i < 3; ++i) a.sum(point[i], p[i], {{t, d[i]}});
+    a.jump_sum_negative({{point[2]}, {room}, {near, true}}, "misses");
+    a.jump_sum_negative({{far}, {room}, {point[2], true}}, "misses");
+    a.most(t, t, zero);
+    a.move(hit, yes);
+    a.label("misses");
     a.end();
     return a.finish();
 }

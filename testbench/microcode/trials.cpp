@@ -8,6 +8,7 @@
 
 #include "model/settings/costs.hpp"
 #include "model/shading/shading.hpp"
+#include "model/tracing/intersect.hpp"
 #include "model/tracing/ray.hpp"
 
 namespace raycell {
@@ -153,6 +154,58 @@ class RunTrial : public MicroTrial {
         expect("meets", take("meets"), !(near_ > high_ || std::max(far_, near_) < low_));
     }
     double near_ = 0, far_ = 0, low_ = 0, high_ = 0;
+};
+
+class PlaneTrial : public MicroTrial {
+  public:
+    PlaneTrial(const MicroSetting& s, const CostTable& costs)
+        : MicroTrial(s, plane_program(s), "compare_edge + reciprocal",
+                     int(costs.compare_edge + costs.reciprocal(s.numbers.operators))) {}
+
+  private:
+    /// A plane through a point that the ray may or may not reach, in a run around it.
+    void draw(MicroRandom& random) override {
+        const Formats& f = arithmetic_.formats();
+        const double depth = f.depth.most() / 8;
+        ray_ = Ray();
+        set_direction(ray_, any_direction(random, arithmetic_), arithmetic_);
+        ray_.position = {random.word(f.unit, 0, 1), random.word(f.unit, 0, 1),
+                         random.word(f.depth, 0, depth)};
+        ray_.fresh = random.chance(0.3);
+        if (random.chance(0.5)) ray_.leaves = 7;
+        end_ = random.word(f.distance, 0, 2);
+        const double at = random.uniform(-0.2, 1.2) * std::min(end_, 1.5);
+        const dvec3 met = ray_.position + at * ray_.direction;
+        voxel_ = Voxel();
+        voxel_.polygon = 3;
+        voxel_.near = voxel_.base = f.depth.hold(std::clamp(met.z - random.uniform(-0.1, 1), 0.0, depth));
+        voxel_.far = f.depth.hold(voxel_.near + random.uniform(0, 2));
+        Plane plane;
+        plane.n = any_direction(random, exact_arithmetic());
+        if (random.chance(0.2)) plane.n -= 0.999 * glm::dot(plane.n, ray_.direction) * ray_.direction;
+        const dvec3 anchor = met - dvec3(0, 0, voxel_.base);
+        plane.c = glm::dot(plane.n, anchor);
+        voxel_.drop = std::uint8_t(dominant_axis(plane.n));
+        voxel_.plane = hold_plane(plane, voxel_.drop, anchor, f.unit, f.offset);
+        put("n", voxel_.plane.n);
+        put("c", voxel_.plane.c);
+        put("", ray_.position);
+        put("d", ray_.direction);
+        put("base", voxel_.base);
+        put("near", voxel_.near);
+        put("far", voxel_.far);
+        put("end", end_);
+        put("leaves", ray_.fresh && ray_.leaves != no_polygon ? 1 : 0);
+    }
+    void compare() override {
+        const auto t = hit_voxel({}, voxel_, ray_, end_, HitTest::edge, 0.25, arithmetic_);
+        expect("hit", take("hit"), t ? 1 : 0);
+        if (!t) return;
+        expect("t", take("t"), *t);
+    }
+    Ray ray_;
+    Voxel voxel_;
+    double end_ = 0;
 };
 
 class EdgeTrial : public MicroTrial {
@@ -392,6 +445,7 @@ std::vector<std::unique_ptr<MicroTrial>> micro_trials(const MicroSetting& s) {
     std::vector<std::unique_ptr<MicroTrial>> all;
     all.push_back(std::make_unique<WalkTrial>(s, costs));
     all.push_back(std::make_unique<RunTrial>(s, costs));
+    all.push_back(std::make_unique<PlaneTrial>(s, costs));
     all.push_back(std::make_unique<EdgeTrial>(s, costs));
     all.push_back(std::make_unique<OperatorTrial>(s, costs, false));
     all.push_back(std::make_unique<OperatorTrial>(s, costs, true));
