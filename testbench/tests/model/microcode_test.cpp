@@ -32,7 +32,7 @@ TEST_P(MicrocodeOf, EveryProgramEqualsTheModelOnEveryDatapath) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Words, MicrocodeOf, testing::Values(8, 9, 12, 16, 20, 24, 27, 32),
-                         [](const auto& info) { return "of_" + std::to_string(info.param) + "_bits"; });
+                         [](const auto& words) { return "of_" + std::to_string(words.param) + "_bits"; });
 
 TEST(Microcode, AProgramThatWasAlteredIsFoundOut) {
     MicroSetting setting;
