@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 /// room itself. A sub-folder that is not listed is an error.
 const std::map<std::string, std::vector<std::string>> sub_folders = {
     {"model",
-     {"settings", "numbers", "geometry", "shading", "loading", "picture", "files", "tracing", "machine",
-      "truth"}},
+     {"settings", "numbers", "geometry", "shading", "loading", "picture", "files", "tracing", "microcode",
+      "machine", "truth"}},
     {"cells", {"memory", "clock", "channels", "meters", "units", ".", "hosts", "deadlock", "probes"}},
     {"pipeline", {"ranks", "stages", "."}},
     {"scenes", {"."}},
