@@ -46,7 +46,8 @@ bool refract_direction(const ShadePoint& point, double ior, dvec3& out, const Ar
     const double squared = 1 - bent;
     if (squared < 0) return false;
     const double across = arithmetic.mac(formats.field, -arithmetic.square_root(squared), eta, cosine);
-    const dvec3 bent_way = arithmetic.hold(formats.field, eta * point.direction);
+    // One rounding: a double does not hold the product of two long words.
+    const dvec3 bent_way = arithmetic.along(formats.field, dvec3(0), eta, point.direction);
     out = arithmetic.normalise(arithmetic.along(formats.field, bent_way, across, point.normal));
     return true;
 }
