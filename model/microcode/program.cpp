@@ -151,7 +151,7 @@ std::int64_t MicroMachine::part(RegisterIndex index, int number, int width) cons
 }
 
 /// The accumulator / 2^shift, to the nearest (ties to even) or cut off, saturated to `bits` bits.
-std::int64_t MicroMachine::rounded(int shift, int bits) const {
+std::int64_t MicroMachine::rounded(int shift, int bits, bool nearest) const {
     const __int128 most = (__int128(1) << (bits - 1)) - 1;
     __int128 value = accumulator_;
     if (shift < 0) {
@@ -159,13 +159,12 @@ std::int64_t MicroMachine::rounded(int shift, int bits) const {
         if (value != 0 && bits_of(value) - shift > 120) return std::int64_t(value > 0 ? most : -most - 1);
         value *= __int128(1) << -shift;
     } else if (shift > 125) {
-        value = value < 0 && program_.rounding == Rounding::truncate ? -1 : 0;
+        value = value < 0 && !nearest ? -1 : 0;
     } else if (shift > 0) {
         const __int128 down = value >> shift;
         const __int128 rest = value - (down << shift);
         const __int128 half = __int128(1) << (shift - 1);
-        const bool up =
-            program_.rounding == Rounding::nearest && (rest > half || (rest == half && (down & 1)));
+        const bool up = nearest && (rest > half || (rest == half && (down & 1)));
         value = down + (up ? 1 : 0);
     }
     return std::int64_t(std::clamp(value, -most - 1, most));
@@ -231,7 +230,8 @@ int MicroMachine::run(int limit) {
                 break;
             case Op::round:
                 set(i.target, rounded(i.shift - (i.shifts_by ? int(values_[i.b]) : 0),
-                                      program_.registers[i.target].bits));
+                                      program_.registers[i.target].bits,
+                                      i.nearest || program_.rounding == Rounding::nearest));
                 break;
             case Op::jump:
                 at = i.to;
@@ -321,6 +321,11 @@ void Assembler::sum(RegisterIndex target, RegisterIndex c, const std::vector<Fac
     out.shift = fraction - r[target].fraction;
     out.shifts_by = by != none;
     if (out.shifts_by) out.b = by;
+}
+
+void Assembler::sum_to_nearest(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products) {
+    sum(target, c, products);
+    program_.instructions.back().nearest = true;
 }
 
 void Assembler::half_sum(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products) {

@@ -58,6 +58,7 @@ struct MicroInstruction {
     RegisterIndex a = 0;
     RegisterIndex b = 0;
     std::int64_t value = 0;
+    bool nearest = false;  ///< round: to the nearest, whatever the machine's rounding
     int shift = 0;
     bool shifts_by = false;  ///< round: by register b, too
     std::size_t table_index = 0;
@@ -113,7 +114,7 @@ class MicroMachine {
 
   private:
     std::int64_t part(RegisterIndex index, int number, int width) const;
-    std::int64_t rounded(int shift, int bits) const;
+    std::int64_t rounded(int shift, int bits, bool nearest) const;
 
     const MicroProgram& program_;
     std::vector<std::int64_t> values_;
@@ -139,6 +140,8 @@ class Assembler {
     /// number, the sum of the products counts 2^by times as much; then there is no c.
     void sum(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products,
              RegisterIndex by = none);
+    /// The same, rounded to the nearest whatever the machine's rounding: so are accumulators kept.
+    void sum_to_nearest(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products);
     /// target = half of c + the products, rounded once.
     void half_sum(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products);
     void move(RegisterIndex target, RegisterIndex a);

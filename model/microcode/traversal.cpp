@@ -193,7 +193,7 @@ MicroProgram plane_program(const MicroSetting& setting) {
     const RegisterIndex all = a.constant("e 10", most_growth, 8, 0);
 
     a.move(hit, no);
-    a.sum(along, Assembler::none, {{n[0], d[0]}, {n[1], d[1]}, {n[2], d[2]}});
+    a.sum_to_nearest(along, Assembler::none, {{n[0], d[0]}, {n[1], d[1]}, {n[2], d[2]}});
     a.absolute(size, along);
     a.jump_less(size, in_plane, "misses");
     a.subtract(inside, p[2], base);
