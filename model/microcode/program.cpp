@@ -162,7 +162,7 @@ std::int64_t MicroMachine::rounded(int shift, int bits, bool nearest) const {
         value = value < 0 && !nearest ? -1 : 0;
     } else if (shift > 0) {
         const __int128 down = value >> shift;
-        const __int128 rest = value - (down << shift);
+        const __int128 rest = value - down * (__int128(1) << shift);
         const __int128 half = __int128(1) << (shift - 1);
         const bool up = nearest && (rest > half || (rest == half && (down & 1)));
         value = down + (up ? 1 : 0);
