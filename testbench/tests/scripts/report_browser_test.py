@@ -15,6 +15,7 @@ CELLS = 24
 try:
     import matplotlib.image
     from selenium import webdriver
+    from selenium.common.exceptions import WebDriverException
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.by import By
@@ -32,7 +33,10 @@ def browser():
     for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1250,1400"):
         options.add_argument(word)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+    try:
+        driver = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+    except WebDriverException as error:
+        sys.exit(f"skipped: missing software: chromium does not start here: {str(error).splitlines()[0]}")
     driver.set_page_load_timeout(300)
     return driver
 
