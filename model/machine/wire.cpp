@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "model/numbers/bits.hpp"
@@ -13,8 +14,10 @@ namespace {
 constexpr std::uint32_t no_polygon_code = (1U << field::polygon_id) - 1;
 
 [[noreturn]] void refuse(const char* name, double value, int bits) {
-    throw std::range_error(std::string("the field ") + name + " of " + std::to_string(bits) +
-                           " bits has no code for " + std::to_string(value));
+    std::ostringstream text;
+    text.precision(17);
+    text << "the field " << name << " of " << bits << " bits has no code for " << value;
+    throw std::range_error(text.str());
 }
 
 /// Appends a whole number from 0 up.

@@ -39,13 +39,20 @@ int MicroProgram::register_bits() const {
     return bits;
 }
 
+int MicroProgram::words() const {
+    return int(std::count_if(instructions.begin(), instructions.end(),
+                             [](const MicroInstruction& i) { return i.op != Op::constant; }));
+}
+
 int MicroProgram::instruction_bits() const {
-    const int operation = 4;
+    const int operation = 5;
     const int address = bits_for(std::int64_t(registers.size()));
     const int shift = 7;
-    const int jump = bits_for(std::int64_t(instructions.size()));
-    // A target or the place of a jump, two operands of each multiplier and which parts of them, a shift.
-    return operation + std::max(address, jump) + datapath.multipliers * (2 * (address + 2) + 1) + shift;
+    const int rounding = 2;  // shifted by a register, to the nearest
+    const int jump = bits_for(words());
+    // A target or the place of a jump, two operands of each multiplier, which parts of them and the sign.
+    return operation + std::max(address, jump) + datapath.multipliers * (2 * (address + 2) + 1) + shift +
+           rounding;
 }
 
 std::string MicroProgram::listing() const {
@@ -249,7 +256,7 @@ int MicroMachine::run(int limit) {
                 if (values_[i.a] == 0) at = i.to;
                 break;
             case Op::end:
-                return cycles - 1;  // the last instruction's successor is told by a bit of its own
+                return cycles - 1;  // fetched while the last instruction runs
         }
         accumulator_bits_ = std::max(accumulator_bits_, bits_of(accumulator_));
     }

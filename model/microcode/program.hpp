@@ -88,10 +88,11 @@ struct MicroProgram {
     RegisterIndex find(const std::string& name) const;  ///< throws std::out_of_range
     /// Bits of all registers.
     int register_bits() const;
-    /// Bits of an instruction: operation, registers, shift, and where to jump; and of all of them. A constant
-    /// is a register that is never written, so it costs a register and no bits here.
+    /// Instructions in the memory. A constant is a register that nothing writes: it is none of them.
+    int words() const;
+    /// Bits of an instruction: operation, registers, shift, where to jump; and of all of them.
     int instruction_bits() const;
-    int memory_bits() const { return instruction_bits() * int(instructions.size()); }
+    int memory_bits() const { return instruction_bits() * words(); }
     /// A line for each instruction.
     std::string listing() const;
 };

@@ -11,6 +11,7 @@
 #include <memory>
 #include <new>
 #include <streambuf>
+#include <systemc>
 
 #include "scenes/diagnostics.hpp"
 #include "testbench/common/help.hpp"
@@ -148,6 +149,8 @@ int run_guarded(const std::string& name, const std::string& smaller, const std::
         message = name + ": " + error.what();
         code = exit_refused;
     } catch (const OtherRankFailed&) {
+    } catch (const sc_core::sc_report& report) {  // of an exception inside a process
+        message = name + ": " + report.get_msg();
     } catch (const std::exception& error) {
         message = name + ": " + error.what();
     }

@@ -317,10 +317,10 @@ void add_watch_options(OptionTable& table, RenderOptions& options) {
 
 void add_recording_options(OptionTable& table, RenderOptions& options) {
     table.group("Looking inside");
-    table.number(
-        "film", options.film, 0, 2000,
-        "frames of the run at most, in PREFIX.film.json: coarse maps of messages, voxels and slots over "
-        "time, which the report page shows; 0: none");
+    table.number("film", options.film, 0, 2000,
+                 "frames of the run at most, from 4 on, in PREFIX.film.json: coarse maps of messages, voxels "
+                 "and slots over "
+                 "time, which the report page shows; 0: none");
     table.flag(
         "rays", options.rays,
         "a line for every ray, in PREFIX.rays.csv: where it came from, where it ended, its cycles and hops");

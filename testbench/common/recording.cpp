@@ -3,6 +3,8 @@
 namespace raycell {
 
 void check_recording(const RenderOptions& options) {
+    if (options.film > 0 && options.film < 4)
+        throw UsageError("--film: a film has two halves of two frames at least; expected 0, or 4 to 2000");
     if (options.film == 0 && !options.rays) return;
     const std::string name = options.film > 0 ? "--film" : "--rays";
     if (options.engine != Engine::timed)

@@ -56,8 +56,7 @@ void try_all(const MicroSetting& setting, const Options& o, bool& listed) {
         std::cout << "| " << setting.datapath.name << " | " << p.name << " | `" << trial->cost() << "` | "
                   << trial->table_cycles() << " | " << tally.least << " | " << one_digit(tally.mean) << " | "
                   << tally.most << " | " << p.registers.size() << " | " << p.register_bits() << " | "
-                  << trial->accumulator_bits() << " | " << p.instructions.size() << " | " << p.memory_bits()
-                  << " |\n";
+                  << trial->accumulator_bits() << " | " << p.words() << " | " << p.memory_bits() << " |\n";
     }
     if (o.listing.empty()) return;
     for (const auto& trial : micro_trials(setting)) {

@@ -243,7 +243,7 @@
   if (data.film) {
     $("film").hidden = false;
     film = new Film(data.film);
-    film.show(wanted.has("frame") ? Number(wanted.get("frame")) : film.busiest);
+    film.show(wanted.has("frame") ? Number(wanted.get("frame")) || 0 : film.busiest);
   }
   if (data.rays) {
     $("rays").hidden = false;

@@ -190,6 +190,20 @@ TEST(Recording, TheRunRepeatedForItsWaveformsRecordsNothing) {
     EXPECT_TRUE(fs::exists(workshop.result("a.film.json")));
 }
 
+TEST(Film, OfLessThanTwoFramesForEachHalfIsRefused) {
+    const Workshop workshop;
+    for (const std::string frames : {"1", "3"}) {
+        const Finished finished =
+            workshop.render(own_scene("cornell.nff"), {"--cells", "8x8", "--film", frames});
+        EXPECT_EQ(finished.exit_code, 1);
+        EXPECT_TRUE(contains(finished.err, "expected 0, or 4 to 2000")) << finished.err;
+    }
+    for (const std::size_t frames : {4, 7, 9}) {
+        workshop.report(own_scene("cornell.nff"), {"--cells", "8x8", "--film", std::to_string(frames)});
+        EXPECT_LE(film_of(workshop).at("cycles").size(), frames);
+    }
+}
+
 TEST(Recording, WithoutTimeItIsRefused) {
     const Workshop workshop;
     for (const Words& words : std::vector<Words>{{"--film", "10"}, {"--rays"}}) {

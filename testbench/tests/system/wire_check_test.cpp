@@ -61,6 +61,17 @@ TEST(WireCheck, TheProceduralDatabasesScenesAreTheSame) {
     }
 }
 
+TEST(WireCheck, AVoxelThatHasNoCodeEndsTheRunWithTheFieldsName) {
+    const Workshop workshop;  // a cell with 4671 voxels, whose numbers have 10 bits in messages
+    const Finished finished =
+        workshop.render(own_scene("still_life.nff"),
+                        {"--cells", "1x1", "--chord-error", "0.001", "--shadows", "precast", "--wire-check"});
+    EXPECT_EQ(finished.exit_code, 1);
+    EXPECT_EQ(finished.error_lines(), 1u) << finished.err;
+    EXPECT_TRUE(contains(finished.err, "the field slot of 10 bits has no code for 1024")) << finished.err;
+    EXPECT_EQ(workshop.results(), std::vector<std::string>());
+}
+
 TEST(WireCheck, WithoutWiresOrWordsItIsRefused) {
     const Workshop workshop;
     const Finished untimed =
