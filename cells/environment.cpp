@@ -1,5 +1,6 @@
 #include "cells/environment.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "cells/channels/link.hpp"
@@ -17,7 +18,9 @@ CellConfig::CellConfig(const CellScene& scene, const PictureSettings& picture_se
              cycles_for(bits.verdict)},
       classes(buffer_classes(machine.networks)),
       answer_routing(classes.count > 1 ? int(machine.costs.route_return) : 0) {
-    if (machine.wire_check) wire.emplace(settings, machine, context.arithmetic.formats());
+    if (!machine.wire_check) return;
+    wire.emplace(settings, machine, context.arithmetic.formats());
+    load_wire.emplace(settings, context.arithmetic.formats());
 }
 
 void CellConfig::stall(Link& link, const std::string& name) const {
@@ -28,29 +31,113 @@ void CellConfig::stall(Link& link, const std::string& name) const {
 }
 
 /// What `unpacked` gives; counts it, and says where a value without a code came up.
-template <typename F>
-auto Environment::checked(std::uint64_t ray, const F& unpacked) {
+template <typename F, typename U>
+auto Environment::checked(const F& what, const U& unpacked) {
     try {
-        ++meters.counters.packed;
         return unpacked();
     } catch (const std::range_error& error) {
-        throw std::runtime_error("--wire-check: cycle " + std::to_string(scheduler.now()) + ", ray " +
-                                 ray_name(ray) + ": " + error.what());
+        throw std::runtime_error("--wire-check: cycle " + std::to_string(scheduler.now()) + ", " + what() +
+                                 ": " + error.what());
     }
 }
 
 void Environment::pack_and_unpack(RayPacket& packet) {
     const std::uint64_t id = packet.ray.id;
-    packet.ray =
-        checked(id, [&] { return wire->unpack_ray(wire->pack(packet.ray), phase == Phase::precast); });
+    ++meters.counters.packed;
+    packet.ray = checked([&] { return "ray " + ray_name(id); },
+                         [&] { return wire->unpack_ray(wire->pack(packet.ray), phase == Phase::precast); });
     packet.ray.id = id;
     packet.visit = {};
 }
 
 void Environment::pack_and_unpack(Answer& answer) {
     const std::uint64_t id = answer.id;
-    answer = checked(id, [&] { return wire->unpack_answer(wire->pack(answer), phase == Phase::precast); });
+    ++meters.counters.packed;
+    answer = checked([&] { return "ray " + ray_name(id); },
+                     [&] { return wire->unpack_answer(wire->pack(answer), phase == Phase::precast); });
     answer.id = id;
+}
+
+namespace {
+
+/// What cells latch from the first message.
+ViewerMessage viewer_of(const Context& context) {
+    const Frame& frame = context.scene.frame;
+    return {context.eye,        frame.viewer_at_infinity, context.scene.beyond,
+            context.background, frame.depth_levels,       frame.level(),
+            context.sources};
+}
+
+bool equal(const Material& a, const Material& b) {
+    return a.colour == b.colour && a.diffuse == b.diffuse && a.specular == b.specular && a.shine == b.shine &&
+           a.transmit == b.transmit && a.ior == b.ior && a.mirror == b.mirror;
+}
+bool equal(const ViewerMessage& a, const ViewerMessage& b) {
+    const auto same = [](const Source& p, const Source& q) {
+        return p.position == q.position && p.intensity == q.intensity;
+    };
+    return a.eye == b.eye && a.at_infinity == b.at_infinity && a.beyond == b.beyond &&
+           a.background == b.background && a.depth_levels == b.depth_levels && a.level == b.level &&
+           std::equal(a.sources.begin(), a.sources.end(), b.sources.begin(), b.sources.end(), same);
+}
+
+}  // namespace
+
+/// Packs a load message and puts into its place what unpacks. What all cells latch is kept once for all of
+/// them: it must be equal.
+WireBits Environment::pass(LoadItem& item) const {
+    const std::uint32_t object = item.trapeze.object;
+    WireBits bits;
+    bool latched = true;
+    switch (item.kind) {
+        case LoadItem::Kind::setup:
+            bits = load_wire->pack(viewer_of(context));
+            latched = equal(load_wire->unpack_viewer(bits), viewer_of(context));
+            break;
+        case LoadItem::Kind::features:
+            bits = load_wire->pack(context.objects[item.object]);
+            latched = equal(load_wire->unpack_features(bits), context.objects[item.object]);
+            break;
+        case LoadItem::Kind::polygon: {
+            bits = load_wire->pack(item.polygon);
+            const std::uint32_t of = item.polygon.object;
+            item.polygon = load_wire->unpack_polygon(bits);
+            item.polygon.object = of;
+            break;
+        }
+        case LoadItem::Kind::surface:
+            bits = load_wire->pack(static_cast<const Surface&>(item.trapeze));
+            item.trapeze = {};
+            static_cast<Surface&>(item.trapeze) = load_wire->unpack_surface(bits);
+            item.trapeze.object = object;
+            break;
+        case LoadItem::Kind::trapeze:
+            bits = load_wire->pack(item.trapeze, item.intensities);
+            item.trapeze = load_wire->unpack_trapeze(bits, item.intensities);
+            break;
+        case LoadItem::Kind::span: {
+            bits = load_wire->pack(item.span);
+            const std::uint32_t of = item.span.object;
+            item.span = load_wire->unpack_span(bits);
+            item.span.object = of;
+            break;
+        }
+        case LoadItem::Kind::end_of_scene:
+            bits = load_wire->end_of_scene();
+            break;
+    }
+    if (!latched) throw std::logic_error("internal error: latched words differ from those of the message");
+    return bits;
+}
+
+void Environment::pack_and_unpack(LoadItem& item, int bits) {
+    ++meters.counters.packed_load;
+    const auto what = [&] { return std::string("load message '") + name_of(item.kind) + "'"; };
+    const WireBits packed = checked(what, [&] { return pass(item); });
+    if (packed.size() != bits) {
+        throw std::logic_error("internal error: " + what() + " has " + std::to_string(packed.size()) +
+                               " bits and is charged for " + std::to_string(bits));
+    }
 }
 
 int CellConfig::load_bits(const LoadItem& item) const {
@@ -62,9 +149,11 @@ int CellConfig::load_bits(const LoadItem& item) const {
         case LoadItem::Kind::polygon:
             return int(item.polygon.vertices.size()) * bits.vertex + bits.polygon;
         case LoadItem::Kind::trapeze:
-            return bits.trapeze;
+            return bits.trapeze + item.trapeze.edge_count * bits.edge;
+        case LoadItem::Kind::surface:
+            return bits.surface;
         case LoadItem::Kind::span:
-            return bits.span;
+            return bits.span + std::min(item.span.edge_count, bits.span_edges) * bits.edge;
         case LoadItem::Kind::end_of_scene:
             break;
     }

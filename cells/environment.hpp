@@ -8,6 +8,7 @@
 #include "cells/clock/scheduler.hpp"
 #include "cells/meters/meters.hpp"
 #include "cells/units/time_out.hpp"
+#include "model/machine/load_wire.hpp"
 #include "model/machine/wire.hpp"
 #include "model/picture/picture.hpp"
 
@@ -43,7 +44,8 @@ struct CellConfig {
     /// Cycles from an answer's arrival until its cell must look at it; 0 where rays and answers share a
     /// buffer.
     int answer_routing;
-    std::optional<Wire> wire;  ///< with MachineSettings::wire_check
+    std::optional<Wire> wire;           ///< with MachineSettings::wire_check
+    std::optional<LoadWire> load_wire;  ///< the same
 
     /// `scene` and `traffic` (may be null) must outlive it; the settings are copied.
     CellConfig(const CellScene& scene, const PictureSettings& picture_settings,
@@ -80,6 +82,10 @@ struct Environment : CellConfig {
     void over_wire(Answer& answer) {
         if (wire) pack_and_unpack(answer);
     }
+    /// The same for a load message, which is charged for so many bits.
+    void over_wire(LoadItem& item, int bits) {
+        if (load_wire) pack_and_unpack(item, bits);
+    }
 
     /// `part`: the rows that this process simulates; null: the whole array.
     Environment(const CellScene& scene, const PictureSettings& picture_settings,
@@ -100,8 +106,10 @@ struct Environment : CellConfig {
   private:
     void pack_and_unpack(RayPacket& packet);
     void pack_and_unpack(Answer& answer);
-    template <typename F>
-    auto checked(std::uint64_t ray, const F& unpacked);
+    void pack_and_unpack(LoadItem& item, int bits);
+    WireBits pass(LoadItem& item) const;
+    template <typename F, typename U>
+    auto checked(const F& what, const U& unpacked);
 };
 
 }  // namespace raycell

@@ -50,6 +50,12 @@ void end_primary(const Answer& answer, Injector& injector, Environment& environm
     ++environment.meters.counters.pixels_done;
 }
 
+void send_load(LinkOut& out, LoadItem& item, Environment& environment) {
+    const int bits = environment.load_bits(item);
+    environment.over_wire(item, bits);
+    out.send(0, Message(&item), environment.cycles_for(bits));
+}
+
 std::optional<LoadItem::Kind> pass_load(LoadingUnit& unit, LinkIn& from, LinkOut* east, CellStore& store,
                                         Environment& environment, CellMeter& meter, int x, Wakeup& wakeup) {
     const Cycle now = environment.scheduler.now();
@@ -66,7 +72,7 @@ std::optional<LoadItem::Kind> pass_load(LoadingUnit& unit, LinkIn& from, LinkOut
     if (ends) {
         environment.pools.loads.give_back(item);
     } else {
-        east->send(0, Message(item), environment.cycles_for(environment.load_bits(*item)));
+        send_load(*east, *item, environment);
     }
     if (from.front(0).kind != Message::Kind::none) wakeup.at(now + 1);
     return kind;

@@ -38,6 +38,9 @@ void send_answer(Answer* answer, Out& out, Environment& environment, CellMeter& 
              environment.answer_routing);
 }
 
+/// Sends a load message over `out`; it must be able to start there now.
+void send_load(LinkOut& out, LoadItem& item, Environment& environment);
+
 /// The answer in which a tested ray ends, if it needs one.
 Answer response_of(const RayPacket& packet, const Context& context);
 /// A ray ends here, with or without an answer: counts it and gives the packet back to its pool. Not for

@@ -24,17 +24,24 @@ struct RayPacket {
 };
 static_assert(sizeof(RayPacket) == 3 * 64);  // three cache lines: every hop moves them all
 
-/// A load message. Geometry sends polygons; precomputation sends trapezes, which travel down the column of
-/// distributors; spans travel in the rows. All other kinds are broadcast.
+/// A load message. Geometry sends polygons; precomputation sends for each what its trapezes share, then the
+/// trapezes; both travel down the column of distributors. Spans travel in the rows. All other kinds are
+/// broadcast.
 struct LoadItem {
-    enum class Kind : std::uint8_t { setup, features, polygon, trapeze, span, end_of_scene };
+    enum class Kind : std::uint8_t { setup, features, polygon, surface, trapeze, span, end_of_scene };
     Kind kind = Kind::end_of_scene;
     std::uint32_t object = 0;  ///< features
     Polygon polygon;
     Span span;
-    Trapeze trapeze;
+    Trapeze trapeze;  ///< of a surface its first part alone
     CornerIntensities intensities{};
 };
+
+inline const char* name_of(LoadItem::Kind kind) {
+    constexpr const char* names[] = {
+        "sources and viewer", "features", "polygon", "surface", "trapeze", "span", "end of scene"};
+    return names[std::size_t(kind)];
+}
 
 struct Message {
     enum class Kind : std::uint8_t { none, ray, answer, load };

@@ -30,7 +30,8 @@ struct AnswerRecord {
     Answer answer;
     std::uint32_t cycles;
 };
-struct TrapezeRecord {
+struct TrapezeRecord {  // or its surface
+    LoadItem::Kind kind;
     Trapeze trapeze;
     CornerIntensities intensities;
     std::uint32_t cycles;
@@ -116,9 +117,11 @@ void SplitLinks::put_message(std::uint32_t number, int index, const Message& mes
             put(AnswerRecord{*message.answer, ticks});
             break;
         case Message::Kind::load:
-            if (message.load->kind == LoadItem::Kind::trapeze) {
+            if (message.load->kind == LoadItem::Kind::trapeze ||
+                message.load->kind == LoadItem::Kind::surface) {
                 begin(Record::trapeze);
-                put(TrapezeRecord{message.load->trapeze, message.load->intensities, ticks});
+                put(TrapezeRecord{message.load->kind, message.load->trapeze, message.load->intensities,
+                                  ticks});
             } else {
                 begin(Record::broadcast);
                 put(BroadcastRecord{message.load->kind, message.load->object, ticks});
@@ -175,7 +178,7 @@ void SplitLinks::deliver(const std::byte* data, std::size_t size, MessagePools& 
             case Record::trapeze: {
                 const auto record = records.get<TrapezeRecord>();
                 LoadItem* item = pools.loads.take();
-                item->kind = LoadItem::Kind::trapeze;
+                item->kind = record.kind;
                 item->trapeze = record.trapeze;
                 item->intensities = record.intensities;
                 link.send(index, Message(item), int(record.cycles));

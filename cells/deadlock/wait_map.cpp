@@ -114,9 +114,7 @@ std::string describe(const Answer& answer) {
 }
 
 std::string describe(const LoadItem& item) {
-    constexpr const char* kinds[] = {"sources and viewer", "features", "polygon", "trapeze", "span",
-                                     "end of scene"};
-    return std::string("load message '") + kinds[int(item.kind)] + "'";
+    return std::string("load message '") + name_of(item.kind) + "'";
 }
 
 }  // namespace raycell

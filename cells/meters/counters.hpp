@@ -19,6 +19,7 @@ struct Counters {
     std::uint64_t loads_sent = 0;       ///< spans and broadcast messages put into a row
     std::uint64_t loads_delivered = 0;  ///< of these, ended in their last cell
     std::uint64_t packed = 0;           ///< rays and answers packed and unpacked, with a wire check
+    std::uint64_t packed_load = 0;      ///< load messages, the same
     std::uint64_t cells_loaded = 0;     ///< end-of-scene marks seen
     std::uint64_t pixels_done = 0;
     std::uint64_t slots_used = 0;   ///< slots in use now, over all cells

@@ -6,6 +6,7 @@
 
 #include "model/geometry/tessellate.hpp"
 #include "model/geometry/visible_extent.hpp"
+#include "model/numbers/field_widths.hpp"
 
 namespace raycell {
 
@@ -46,6 +47,16 @@ std::vector<HalfSpace> field_of_view(ViewerMode viewer, double tan_x, double tan
 
 }  // namespace
 
+namespace {
+
+/// The next larger height of a level that cells can be told: a mantissa of 16 bits.
+double level_word(double level) {
+    const double step = scale_by(1, exponent_of(level) + 1 - field::level_mantissa);
+    return std::ceil(level / step) * step;
+}
+
+}  // namespace
+
 Frame place_frame(const Scene& scene, const PictureSettings& settings) {
     if (!scene.view) throw std::invalid_argument("the scene has no view");
     const View& view = *scene.view;
@@ -80,7 +91,8 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
     const double distance = frame.viewer_at_infinity ? to_target : near;
     frame.cell_width = tan_cell * distance;
     const double far = extent.far + margin * frame.cell_width;
-    frame.depth = std::max((far - near) / frame.cell_width, 1.0);
+    frame.depth = settings.depth_levels *
+                  level_word(std::max((far - near) / frame.cell_width, 1.0) / settings.depth_levels);
     frame.corner = view.from + near * frame.forward -
                    0.5 * frame.cell_width *
                        (double(settings.width) * frame.right + double(settings.height) * frame.down);

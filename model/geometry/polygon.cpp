@@ -43,26 +43,23 @@ NormalField hold_field(const NormalField& field, const dvec2& anchor, const Form
     return held;
 }
 
-NormalField fill_words(const NormalField& field, const dvec2& anchor, double most, double least,
+NormalField fill_words(const NormalField& field, const dvec3& middle, double most, double least,
                        bool* single) {
-    const auto largest = [](const NormalField& f) {
-        double size = 0;
-        for (const dvec3& v : {f.base, f.du, f.dv}) {
-            size = std::max({size, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-        }
-        return size;
+    const auto size_of = [](const dvec3& v) {
+        return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    };
+    const auto scale_of = [&](const NormalField& f) {
+        const double size = std::max({size_of(f.base), size_of(f.du), size_of(f.dv)});
+        return size > 0 && std::isfinite(size) ? scale_by(1, exponent_of(most) - 1 - exponent_of(size)) : 1;
     };
     const auto scaled = [&](const NormalField& f) {
-        const double size = largest(f);
-        if (!(size > 0) || !std::isfinite(size)) return f;
-        const double scale = scale_by(1, exponent_of(most) - 1 - exponent_of(size));
+        const double scale = scale_of(f);
         return NormalField{scale * f.base, scale * f.du, scale * f.dv};
     };
-    const NormalField filled = scaled(field);
     const bool flat = field.du == dvec3(0) && field.dv == dvec3(0);
-    if (flat || glm::length(filled.at(anchor)) >= least) return filled;
+    if (flat || scale_of(field) * size_of(middle) >= least) return scaled(field);
     if (single) *single = true;
-    return scaled({field.at(anchor), dvec3(0), dvec3(0)});
+    return scaled({middle, dvec3(0), dvec3(0)});
 }
 
 dvec3 newell(const std::vector<dvec3>& vertices) {

@@ -70,9 +70,10 @@ NormalField hold_field(const NormalField& field, const dvec2& anchor, const Form
 
 /// Scales a field for words that hold less than `most`, a power of two. Only the field's direction counts, so
 /// it is scaled by a power of two until its largest component lies in [most / 2, most). If the field turns so
-/// fast that less than `least` of it would be left at `anchor`, words can't tell its polygon from a point:
-/// the result is the value at `anchor` without gradients, and `single` is set.
-NormalField fill_words(const NormalField& field, const dvec2& anchor, double most, double least,
+/// fast that of `middle`, its value in the middle of its polygon, less than `least` would be left in every
+/// component, words can't tell the polygon from a point: the result is `middle` without gradients, and
+/// `single` is set.
+NormalField fill_words(const NormalField& field, const dvec3& middle, double most, double least,
                        bool* single = nullptr);
 
 /// Smallest length of a normal in words of this format: a shorter normal has a direction that is off by more

@@ -21,7 +21,7 @@ void hold(Polygon& polygon, const Arithmetic& arithmetic) {
     const dvec2 middle = project(centre, polygon.drop);
     // Uses an eighth of the range: the field may be larger at another cell than at the origin.
     const double most = scale_by(1, word.integer_bits() - 4);
-    polygon.normal = fill_words(polygon.normal, middle, most, 1024 * word.step());
+    polygon.normal = fill_words(polygon.normal, polygon.normal.at(middle), most, 1024 * word.step());
     polygon.normal = hold_field(polygon.normal, middle, word, word);
 }
 
@@ -43,13 +43,13 @@ std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings&
     for (Polygon polygon : scene.polygons) {
         if (!clip_to_cube(polygon, frame.cube(), arithmetic)) continue;
         ++total.polygons;
-        for (const Trapeze& trapeze : precompute(polygon, arithmetic)) {
+        for (const Trapeze& trapeze : precompute(polygon, arithmetic, frame.width, frame.height)) {
             ++total.trapezes;
             CornerIntensities shades;
-            if (gouraud) shades = shade_corners(trapeze, scene);
-            for (int row = trapeze.first_row(frame.height); row < frame.height; ++row) {
-                if (auto span =
-                        cut_span(trapeze, row, frame.width, arithmetic, gouraud ? &shades : nullptr)) {
+            if (gouraud) shades = shade_corners(trapeze, scene, arithmetic);
+            for (int row = trapeze.rows.first; row < frame.height; ++row) {
+                if (auto span = cut_span(trapeze, row, frame.depth, settings.hit, arithmetic,
+                                         gouraud ? &shades : nullptr)) {
                     ++total.spans;
                     for (;; advance(*span, arithmetic)) {
                         const std::size_t cell =

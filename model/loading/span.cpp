@@ -3,59 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/loading/part.hpp"
 #include "model/shading/shading.hpp"
 
 namespace raycell {
 namespace {
-
-/// Below this |n_z| the plane's depth functions are useless; the bounds of the row's part are used instead.
-constexpr double least_facing = 1e-5;
-
-std::vector<dvec3> row_part(const Trapeze& trapeze, int row) {
-    std::vector<dvec3> part(trapeze.corners.begin(), trapeze.corners.begin() + trapeze.corner_count);
-    const double low = row - trapeze.slack.y;
-    const double high = row + 1 + trapeze.slack.y;
-    if (trapeze.top < low) part = clip_half_space(part, 1, low, 1);
-    if (trapeze.bottom > high && !part.empty()) part = clip_half_space(part, 1, high, -1);
-    return part;
-}
-
-void set_depth_functions(Span& span, double y_low, double y_high) {
-    const dvec3& n = span.plane.n;
-    if (std::abs(n.z) < least_facing) {
-        span.near = span.z_min;
-        span.far = span.z_max;
-        return;
-    }
-    const double by_x = -n.x / n.z;
-    const double by_y = -n.y / n.z;
-    const double at_corner = span.plane.c / n.z;  // the plane is relative to the span's first cell already
-    span.near = at_corner + std::min(by_x, 0.0) + std::min(by_y * y_low, by_y * y_high);
-    span.far = at_corner + std::max(by_x, 0.0) + std::max(by_y * y_low, by_y * y_high);
-    span.d_near = span.d_far = by_x;
-}
-
-/// Rounds the values that the row computed to loading words. All others are already sums of loading words.
-void hold(Span& span, const Format& word) {
-    const double steep = word.most() / 4;
-    if (std::abs(span.d_near) > steep || std::abs(span.near) > steep || std::abs(span.far) > steep) {
-        // Too steep for words: uses the bounds, as for a plane without depth functions.
-        span.near = span.z_min;
-        span.far = span.z_max;
-        span.d_near = span.d_far = 0;
-    }
-    for (double* value : {&span.near, &span.far, &span.d_near, &span.d_far, &span.z_min, &span.z_max}) {
-        *value = word.hold(*value);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        span.intensity[axis] = word.hold(span.intensity[axis]);
-        span.d_intensity[axis] = word.hold(span.d_intensity[axis]);
-        for (int i = 0; i < span.outline_count; ++i) {
-            double& place = span.outline[std::size_t(i)][axis];
-            place = word.hold(place);
-        }
-    }
-}
 
 /// Classic Gouraud: takes the intensities on the left and the right side at the middle of the row's part, and
 /// interpolates linearly between them.
@@ -88,56 +40,113 @@ void set_intensity(Span& span, const Trapeze& trapeze, const CornerIntensities& 
         right - left >= 1 ? at_left + (centre - left) * span.d_intensity : 0.5 * (at_left + at_right);
 }
 
-}  // namespace
-
-std::optional<Span> cut_span(const Trapeze& trapeze, int row, int width, const Arithmetic& arithmetic,
-                             const CornerIntensities* intensities) {
-    if (trapeze.bottom + trapeze.slack.y < row || trapeze.top - trapeze.slack.y > row + 1)
-        return std::nullopt;
-    const std::vector<dvec3> part = row_part(trapeze, row);
-    if (part.size() < 3) return std::nullopt;
-    dvec3 low = part.front();
-    dvec3 high = part.front();
-    for (const dvec3& p : part) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    low -= trapeze.slack;
-    high += trapeze.slack;
+/// The surface and the edges as seen from the corner of cell (x, row): sums of words.
+Span seen_from(const Trapeze& trapeze, int x, int row) {
     Span span;
-    span.slack = trapeze.slack;
     span.polygon = trapeze.polygon;
     span.object = trapeze.object;
-    span.x = std::clamp(int(std::floor(low.x)), 0, width - 1);
-    span.last = std::clamp(int(std::floor(high.x)), span.x, width - 1);
-    const dvec3 corner{double(span.x), double(row), 0};
-    span.plane = trapeze.plane;
-    span.plane.c -= span.plane.n.x * corner.x + span.plane.n.y * corner.y;
+    span.slack = trapeze.slack;
     span.drop = trapeze.drop;
+    span.x = span.last = x;
+    span.plane = trapeze.plane;
+    span.plane.c -= span.plane.n.x * x + span.plane.n.y * row;
+    const dvec2 shift = project({double(x), double(row), 0}, span.drop);
     span.normal = trapeze.normal;
-    const dvec2 shift = project(corner, span.drop);
     span.normal.base = trapeze.normal.at(shift);
     span.edge_count = trapeze.edge_count;
     for (int i = 0; i < span.edge_count; ++i) {
-        EdgeFunction edge = trapeze.edges[std::size_t(i)];
+        EdgeFunction& edge = span.edges[std::size_t(i)] = trapeze.edges[std::size_t(i)];
         edge.c = edge.at(shift);
-        span.edges[std::size_t(i)] = edge;
     }
-    span.z_min = low.z;
-    span.z_max = high.z;
-    span.outline_count = int(std::min(part.size(), span.outline.size()));
-    for (int i = 0; i < span.outline_count; ++i) span.outline[std::size_t(i)] = part[std::size_t(i)] - corner;
-    set_depth_functions(span, std::clamp(low.y - row, 0.0, 1.0), std::clamp(high.y - row, 0.0, 1.0));
+    return span;
+}
+
+/// Leaves out the edges that cut none of the span's cells.
+void keep_crossing_edges(Span& span, double depth) {
+    const dvec3 cells{double(span.last - span.x + 1), 1, depth};
+    const dvec2 low = project(-span.slack, span.drop);
+    const dvec2 high = project(cells + span.slack, span.drop);
+    const auto crosses = [&](const EdgeFunction& e) {
+        return e.c + std::min(e.a * low.x, e.a * high.x) + std::min(e.b * low.y, e.b * high.y) < 0;
+    };
+    int kept = 0;
+    for (int i = 0; i < span.edge_count; ++i) {
+        if (crosses(span.edges[std::size_t(i)])) span.edges[std::size_t(kept++)] = span.edges[std::size_t(i)];
+    }
+    span.edge_count = kept;
+}
+
+/// Rung `depth`: whether the polygon covers the centre of the span's current cell; z is its depth there.
+bool covers_centre(const Span& span, double hair, double& z) {
+    const dvec3& n = span.plane.n;
+    if (std::abs(n.z) < 1e-12) return false;
+    z = (span.plane.c - 0.5 * (n.x + n.y)) / n.z;
+    const dvec2 uv = project({0.5, 0.5, z}, span.drop);
+    for (int i = 0; i < span.edge_count; ++i) {
+        if (span.edges[std::size_t(i)].at(uv) < -hair) return false;
+    }
+    return true;
+}
+
+/// Rung `depth`: cuts the span down to the cells whose centres the polygon covers, and sets depth and normal
+/// at the first of them with their increments (paper, section 3.1: Z, DZ, N, DN). False if there are none.
+bool keep_covered_centres(Span& span, const Arithmetic& arithmetic) {
+    double z = 0;
+    const int last = span.last;
+    while (!covers_centre(span, arithmetic.hair(), z)) {
+        if (span.x == last) return false;
+        advance(span, arithmetic);
+    }
+    const Format& word = arithmetic.formats().loading;
+    const dvec3& n = span.plane.n;
+    span.z = arithmetic.hold(word, z);
+    Span next = span;
+    for (span.last = span.x; span.last < last; ++span.last) {
+        advance(next, arithmetic);
+        if (!covers_centre(next, arithmetic.hair(), z)) break;
+    }
+    span.n = arithmetic.hold(word, span.normal.at(project({0.5, 0.5, span.z}, span.drop)));
+    if (span.last > span.x) {
+        span.dz = arithmetic.hold(word, -n.x / n.z);
+        const dvec2 step = project({1, 0, span.dz}, span.drop);
+        span.dn = arithmetic.hold(word, step.x * span.normal.du + step.y * span.normal.dv);
+    }
+    return true;
+}
+
+}  // namespace
+
+std::optional<Span> cut_span(const Trapeze& trapeze, int row, double depth, HitTest hit,
+                             const Arithmetic& arithmetic, const CornerIntensities* intensities) {
+    if (row < trapeze.rows.first || row > trapeze.rows.last) return std::nullopt;
+    const auto [first, last] = trapeze.columns;
+    const Span whole = seen_from(trapeze, 0, row);
+    const Box box{dvec3(first, 0, 0) - trapeze.slack, dvec3(last + 1, 1, depth) + trapeze.slack};
+    const Part part =
+        part_in({whole.plane, whole.drop, whole.edges.data(), whole.edge_count}, box, arithmetic);
+    if (part.empty()) return std::nullopt;
+    const auto column = [first = first, last = last](double x) {
+        return std::clamp(int(std::floor(x)), first, last);
+    };
+    Span span = seen_from(trapeze, column(part.low.x - trapeze.slack.x), row);
+    span.last = std::max(column(part.high.x + trapeze.slack.x), span.x);
+    if (hit == HitTest::depth) {
+        if (!keep_covered_centres(span, arithmetic)) return std::nullopt;
+    } else {
+        keep_crossing_edges(span, depth);
+    }
     if (intensities) {
-        set_intensity(span, trapeze, *intensities, std::clamp(row + 0.5, low.y, high.y));
+        const double low = std::clamp(part.low.y, 0.0, 1.0);
+        const double high = std::clamp(part.high.y, 0.0, 1.0);
+        set_intensity(span, trapeze, *intensities, row + std::clamp(0.5, low, high));
+        span.intensity = arithmetic.hold(arithmetic.formats().loading, span.intensity);
+        span.d_intensity = arithmetic.hold(arithmetic.formats().loading, span.d_intensity);
     }
-    if (!arithmetic.exact()) hold(span, arithmetic.formats().loading);
     return span;
 }
 
 void advance(Span& span, const Arithmetic& arithmetic) {
     // Increments and the values they are added to have the same last bit, so that nothing drifts along a row.
-    const Format& word = arithmetic.formats().loading;
     ++span.x;
     span.plane.c -= span.plane.n.x;
     if (span.drop != 0) {  // otherwise x is not among (u, v)
@@ -145,20 +154,22 @@ void advance(Span& span, const Arithmetic& arithmetic) {
         for (int i = 0; i < span.edge_count; ++i)
             span.edges[std::size_t(i)].c += span.edges[std::size_t(i)].a;
     }
-    span.near = arithmetic.hold(word, span.near + span.d_near);
-    span.far = arithmetic.hold(word, span.far + span.d_far);
-    for (int i = 0; i < span.outline_count; ++i) span.outline[std::size_t(i)].x -= 1;
-    span.intensity = arithmetic.hold(word, span.intensity + span.d_intensity);
+    span.z += span.dz;
+    span.n += span.dn;
+    span.intensity = arithmetic.hold(arithmetic.formats().loading, span.intensity + span.d_intensity);
 }
 
-CornerIntensities shade_corners(const Trapeze& trapeze, const CellScene& scene) {
+CornerIntensities shade_corners(const Trapeze& trapeze, const CellScene& scene,
+                                const Arithmetic& arithmetic) {
     CornerIntensities shades{};
     for (int i = 0; i < trapeze.corner_count; ++i) {
         const dvec3& corner = trapeze.corners[std::size_t(i)];
         const dvec3 normal = trapeze.normal.at(project(corner, trapeze.drop));
         const ShadePoint point = shade_point(corner, {0, 0, 1}, normal, trapeze.plane.n);
-        shades[std::size_t(i)] = local_intensity(point, scene.objects[trapeze.object], scene.sources.data(),
-                                                 scene.sources.size(), ~std::uint64_t(0));
+        shades[std::size_t(i)] =
+            arithmetic.hold(arithmetic.formats().loading,
+                            local_intensity(point, scene.objects[trapeze.object], scene.sources.data(),
+                                            scene.sources.size(), ~std::uint64_t(0)));
     }
     return shades;
 }

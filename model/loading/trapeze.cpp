@@ -194,11 +194,6 @@ class Cutter {
         // Hit points lie on the plane. The outline may lie a little off it, and the neighbour's plane may be
         // off the other way: twice the slack.
         for (int i = 0; i < t.edge_count; ++i) t.edges[std::size_t(i)].c += 2 * polygon_.slack;
-        t.top = t.bottom = ring[0].y;
-        for (const dvec3& p : ring) {
-            t.top = std::min(t.top, p.y);
-            t.bottom = std::max(t.bottom, p.y);
-        }
         trapezes_.push_back(t);
     }
 
@@ -243,6 +238,27 @@ class Cutter {
     std::vector<Trapeze> trapezes_;
 };
 
+/// Sets the rows and columns that the trapezes touch.
+void set_cells(std::vector<Trapeze>& trapezes, int width, int height) {
+    int last_row = 0;
+    for (Trapeze& t : trapezes) {
+        dvec3 low = t.corners[0];
+        dvec3 high = t.corners[0];
+        for (int i = 1; i < t.corner_count; ++i) {
+            low = glm::min(low, t.corners[std::size_t(i)]);
+            high = glm::max(high, t.corners[std::size_t(i)]);
+        }
+        low -= t.slack;
+        high += t.slack;
+        t.rows.first = std::clamp(int(std::floor(low.y)), 0, height - 1);
+        t.rows.last = std::clamp(int(std::ceil(high.y)) - 1, t.rows.first, height - 1);
+        t.columns.first = std::clamp(int(std::floor(low.x)), 0, width - 1);
+        t.columns.last = std::clamp(int(std::floor(high.x)), t.columns.first, width - 1);
+        last_row = std::max(last_row, t.rows.last);
+    }
+    for (Trapeze& t : trapezes) t.last_row = last_row;
+}
+
 }  // namespace
 
 EdgeFunction hold_edge(const EdgeFunction& edge, const dvec2& anchor, const Format& slope,
@@ -253,11 +269,14 @@ EdgeFunction hold_edge(const EdgeFunction& edge, const dvec2& anchor, const Form
     return held;
 }
 
-std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithmetic) {
+std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithmetic, int width, int height) {
     // Both cells at a border get what lies near it, so that one cell, whichever it is, compares all surfaces
     // that a ray meets at the same distance on the border.
     std::vector<Trapeze> trapezes = Cutter(polygon, arithmetic.exact() ? 2 * exact_hair : 0).run();
-    if (arithmetic.exact()) return trapezes;
+    if (arithmetic.exact()) {
+        set_cells(trapezes, width, height);
+        return trapezes;
+    }
     const Format& word = arithmetic.formats().loading;
     for (Trapeze& t : trapezes) {
         dvec3 centre{0, 0, 0};
@@ -270,9 +289,8 @@ std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithm
             EdgeFunction& edge = t.edges[std::size_t(i)];
             edge = hold_edge(edge, project(centre, t.drop), word, word);
         }
-        t.top = word.hold(t.top);
-        t.bottom = word.hold(t.bottom);
     }
+    set_cells(trapezes, width, height);
     return trapezes;
 }
 

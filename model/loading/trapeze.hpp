@@ -25,28 +25,41 @@ struct EdgeFunction {
 EdgeFunction hold_edge(const EdgeFunction& edge, const dvec2& anchor, const Format& slope,
                        const Format& offset);
 
-/// A convex part of a polygon between two lines parallel to the rows. Polygons without height on the screen
-/// (seen edge-on along a row) are cut along z instead, those without height and depth along x.
-struct Trapeze {
+/// What the trapezes of a polygon share. It travels once, before them, and each row keeps it.
+struct Surface {
     std::uint32_t polygon = 0;
     std::uint32_t object = 0;
     Plane plane;
     int drop = 2;
     NormalField normal;
-    std::array<dvec3, 4> corners;  ///< in order round the trapeze; a triangle repeats none
-    int corner_count = 0;
+    dvec3 slack{0, 0, 0};  ///< Polygon::slack on the dropped axis; exact arithmetic: plus what cells share
+    int last_row = 0;      ///< last row with a part of a trapeze
+};
+
+constexpr int most_cells = 4096;  ///< of a row or a column
+
+/// Rows or columns that follow each other, from the first to the last one.
+struct Stretch {
+    int first = 0;
+    int last = 0;
+};
+
+/// A convex part of a polygon between two lines parallel to the rows. Polygons without height on the screen
+/// (seen edge-on along a row) are cut along z instead, those without height and depth along x.
+struct Trapeze : Surface {
     std::array<EdgeFunction, 4> edges;
     int edge_count = 0;
-    double top = 0;        ///< smallest y, cells
-    double bottom = 0;     ///< largest y, cells
-    dvec3 slack{0, 0, 0};  ///< Polygon::slack on the dropped axis; exact arithmetic: plus what cells share
-    /// First row of an array of `height` rows that it touches.
-    int first_row(int height) const { return std::clamp(int(top - slack.y), 0, height - 1); }
+    Stretch rows;  ///< that it touches
+    Stretch columns;
+    std::array<dvec3, 4> corners{};  ///< in order round it; only Gouraud's interpolation needs them
+    int corner_count = 0;          ///< a triangle repeats none
     /// True if a row below `row` still has a part of the trapeze.
-    bool reaches_below(int row) const { return bottom + slack.y > row + 1; }
+    bool reaches_below(int row) const { return rows.last > row; }
 };
 
 /// Cuts a polygon that lies inside the cube into trapezes; in fixed arithmetic they consist of loading words.
-std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithmetic);
+/// Their rows and columns are those of an array of `width` x `height` cells.
+std::vector<Trapeze> precompute(const Polygon& polygon, const Arithmetic& arithmetic, int width = most_cells,
+                                int height = most_cells);
 
 }  // namespace raycell

@@ -2,109 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "model/loading/coverage.hpp"
 #include "model/numbers/bits.hpp"
 #include "model/numbers/field_widths.hpp"
 
 namespace raycell {
 namespace {
-
-struct Rectangle {
-    dvec2 low;
-    dvec2 high;
-};
-
-/// The cell's column over the voxel's run, in the projection of the plane.
-Rectangle footprint(const Voxel& voxel, double level) {
-    const dvec3 low{0, 0, voxel.near_level * level};
-    const dvec3 high{1, 1, voxel.far_level * level};
-    return {project(low, voxel.drop), project(high, voxel.drop)};
-}
-
-double least_over(const EdgeFunction& edge, const Rectangle& r) {
-    return edge.c + std::min(edge.a * r.low.x, edge.a * r.high.x) +
-           std::min(edge.b * r.low.y, edge.b * r.high.y);
-}
-
-double most_over(const EdgeFunction& edge, const Rectangle& r) {
-    return edge.c + std::max(edge.a * r.low.x, edge.a * r.high.x) +
-           std::max(edge.b * r.low.y, edge.b * r.high.y);
-}
-
-/// Whether the span's polygon covers the pixel centre (rung `depth`); z is its depth there.
-bool covers_centre(const Span& span, double hair, double& z) {
-    const dvec3& n = span.plane.n;
-    if (std::abs(n.z) < 1e-12) return false;
-    z = (span.plane.c - 0.5 * (n.x + n.y)) / n.z;
-    const dvec2 uv = project({0.5, 0.5, z}, span.drop);
-    for (int i = 0; i < span.edge_count; ++i) {
-        if (span.edges[std::size_t(i)].at(uv) < -hair) return false;
-    }
-    return true;
-}
-
-/// Bounds of the part inside the cell; together with the edges they tell exactly which sub-cells a convex
-/// part touches.
-Rectangle part_bounds(const std::vector<dvec3>& part, int drop) {
-    Rectangle bounds{dvec2(1e300), dvec2(-1e300)};
-    for (const dvec3& p : part) {
-        bounds.low = glm::min(bounds.low, project(p, drop));
-        bounds.high = glm::max(bounds.high, project(p, drop));
-    }
-    return bounds;
-}
-
-/// The window of the mask: the part's bounds, rounded outwards to 32nds of the footprint.
-Rectangle set_window(Voxel& voxel, const Rectangle& whole, const Rectangle& bounds, double hair) {
-    const dvec2 size = whole.high - whole.low;
-    const dvec2 low = (bounds.low - hair - whole.low) / size * double(window_steps);
-    const dvec2 high = (bounds.high + hair - whole.low) / size * double(window_steps);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-        const int from = std::clamp(int(std::floor(low[int(axis)])), 0, window_steps - 1);
-        const int to = std::clamp(int(std::ceil(high[int(axis)])), from + 1, window_steps);
-        voxel.window[2 * axis] = std::uint8_t(from);
-        voxel.window[2 * axis + 1] = std::uint8_t(to);
-    }
-    const dvec2 step = size / double(window_steps);
-    return {whole.low + step * dvec2(voxel.window[0], voxel.window[2]),
-            whole.low + step * dvec2(voxel.window[1], voxel.window[3])};
-}
-
-bool overlap(const Rectangle& a, const Rectangle& b, double hair) {
-    return a.low.x <= b.high.x + hair && b.low.x <= a.high.x + hair && a.low.y <= b.high.y + hair &&
-           b.low.y <= a.high.y + hair;
-}
-
-/// A sub-cell's bit is set where the polygon touches it at all: watertight first.
-std::uint64_t coverage(const EdgeFunction* edges, int count, const Rectangle& whole, const Rectangle& bounds,
-                       double hair) {
-    std::uint64_t mask = 0;
-    const dvec2 step = (whole.high - whole.low) / 8.0;
-    for (int row = 0; row < 8; ++row) {
-        for (int column = 0; column < 8; ++column) {
-            const dvec2 low = whole.low + step * dvec2(column, row);
-            const Rectangle part{low, low + step};
-            bool touched = overlap(part, bounds, hair);
-            for (int i = 0; i < count && touched; ++i) touched = most_over(edges[i], part) >= -hair;
-            if (touched) mask |= std::uint64_t(1) << (8 * row + column);
-        }
-    }
-    return mask;
-}
-
-/// The span's part inside its current cell; empty if the row's part only passes by.
-std::vector<dvec3> cell_part(const Span& span) {
-    std::vector<dvec3> part(span.outline.begin(), span.outline.begin() + span.outline_count);
-    bool left = false;
-    bool right = false;
-    for (const dvec3& p : part) {
-        left = left || p.x < -span.slack.x;
-        right = right || p.x > 1 + span.slack.x;
-    }
-    if (left) part = clip_half_space(part, 0, -span.slack.x, 1);
-    if (right && !part.empty()) part = clip_half_space(part, 0, 1 + span.slack.x, -1);
-    return part;
-}
 
 dvec3 hold_point(const dvec3& point, const Arithmetic& arithmetic) {
     const Formats& f = arithmetic.formats();
@@ -112,164 +17,205 @@ dvec3 hold_point(const dvec3& point, const Arithmetic& arithmetic) {
             arithmetic.hold(f.depth, point.z)};
 }
 
-/// Sets the voxel's point (mean of the corners) and area.
-void set_point(Voxel& voxel, const std::vector<dvec3>& part) {
-    dvec3 sum{0, 0, 0};
-    for (const dvec3& p : part) sum += p;
-    voxel.point = sum / double(part.size());
-    voxel.point.x = std::clamp(voxel.point.x, 0.0, 1.0);
-    voxel.point.y = std::clamp(voxel.point.y, 0.0, 1.0);
-    voxel.area = 0.5 * glm::length(newell(part));
-}
-
-/// Sets the voxel's plane and normal field from the span's. In words they are right in the middle of the
-/// polygon's part.
-void set_functions(Voxel& voxel, const Span& span, Normals normals, const Arithmetic& arithmetic) {
-    const dvec2 own = project(voxel.point, voxel.drop);
-    voxel.plane = span.plane;
-    voxel.normal = span.normal;
-    if (normals == Normals::voxel) voxel.normal = {span.normal.at(own), {0, 0, 0}, {0, 0, 0}};
-    if (arithmetic.exact()) return;
+/// The voxel's plane in words: its offset is right in the middle of the polygon's part.
+Plane voxel_plane(const Span& span, const Voxel& voxel, const Arithmetic& arithmetic) {
+    if (arithmetic.exact()) return span.plane;
     const Formats& formats = arithmetic.formats();
-    const dvec3 shift{0, 0, voxel.base};
-    Plane plane = span.plane;
-    plane.c -= plane.n.z * voxel.base;
-    voxel.plane = hold_plane(plane, voxel.drop, voxel.point - shift, formats.unit, formats.offset);
-    NormalField field = voxel.normal;
-    field.base = field.at(project(shift, voxel.drop));
-    const dvec2 anchor = project(voxel.point - shift, voxel.drop);
-    const double most = scale_by(1, formats.normal.integer_bits() - 1);
-    field = fill_words(field, anchor, most, least_normal(formats.normal));
-    voxel.normal = hold_field(field, anchor, formats.normal, formats.normal);
+    const Projection axes = projection(voxel.drop);
+    const dvec2 anchor = project(voxel.point - dvec3(0, 0, voxel.base), voxel.drop);
+    const dvec3& n = span.plane.n;
+    Plane plane;
+    plane.n = arithmetic.hold(formats.unit, n);
+    plane.c = arithmetic.long_mac(formats.offset, span.plane.c, -n.z, voxel.base, plane.n[axes.u] - n[axes.u],
+                                  anchor.x, plane.n[axes.v] - n[axes.v], anchor.y);
+    return plane;
 }
 
-/// Sets the run's ends, and moves the edges, which are relative to its beginning, along with it.
-void set_run(Voxel& voxel, CellStore& store, double level, const Arithmetic& arithmetic) {
+/// c + u·du + v·dv, per component.
+dvec3 sum_at(const Format& f, const dvec3& c, const dvec3& du, double u, const dvec3& dv, double v,
+             const Arithmetic& arithmetic) {
+    const auto each = [&](int i) { return arithmetic.long_mac(f, c[i], du[i], u, dv[i], v); };
+    return {each(0), each(1), each(2)};
+}
+
+/// The voxel's field of normals; in words it is right in the middle of the polygon's part, too.
+NormalField voxel_normal(const Span& span, const Voxel& voxel, const PictureSettings& settings,
+                         const Arithmetic& arithmetic) {
+    const Format& loading = arithmetic.formats().loading;
+    const Format& word = arithmetic.formats().normal;
+    NormalField field = span.normal;
+    const dvec2 own = project(voxel.point, voxel.drop);
+    if (settings.normals == Normals::voxel) {
+        const bool from_span = settings.hit == HitTest::depth;
+        const dvec3 normal =
+            from_span ? span.n : sum_at(loading, field.base, field.du, own.x, field.dv, own.y, arithmetic);
+        field = {normal, dvec3(0), dvec3(0)};
+    } else if (voxel.drop != 2 && !arithmetic.exact()) {  // v is z, which counts from the run's beginning
+        field.base = sum_at(loading, field.base, field.dv, voxel.base, dvec3(0), 0, arithmetic);
+    }
+    if (arithmetic.exact()) return field;
+    const dvec2 anchor = project(voxel.point - dvec3(0, 0, voxel.base), voxel.drop);
+    const dvec3 middle = sum_at(loading, field.base, field.du, anchor.x, field.dv, anchor.y, arithmetic);
+    const NormalField filled =
+        fill_words(field, middle, scale_by(1, word.integer_bits() - 1), least_normal(word));
+    NormalField held;
+    held.du = arithmetic.hold(word, filled.du);
+    held.dv = arithmetic.hold(word, filled.dv);
+    held.base =
+        sum_at(word, filled.base, filled.du - held.du, anchor.x, filled.dv - held.dv, anchor.y, arithmetic);
+    return held;
+}
+
+void set_functions(Voxel& voxel, const Span& span, const PictureSettings& settings,
+                   const Arithmetic& arithmetic) {
+    voxel.plane = voxel_plane(span, voxel, arithmetic);
+    voxel.normal = voxel_normal(span, voxel, settings, arithmetic);
+}
+
+/// An edge of the voxel, in words: right at its foot, the point of the edge next to the run's middle.
+EdgeFunction voxel_edge(const EdgeFunction& edge, const Voxel& voxel, const Arithmetic& arithmetic) {
+    if (arithmetic.exact()) return edge;
+    const Formats& formats = arithmetic.formats();
+    const Format& loading = formats.loading;
+    const dvec2 middle = project(0.5 * dvec3(1, 1, voxel.far - voxel.near), voxel.drop);
+    double c = edge.c;
+    if (voxel.drop != 2) c = arithmetic.long_mac(loading, c, edge.b, voxel.base);
+    const double off = arithmetic.long_mac(loading, c, edge.a, middle.x, edge.b, middle.y);
+    const dvec2 foot{arithmetic.long_mac(loading, middle.x, -off, edge.a),
+                     arithmetic.long_mac(loading, middle.y, -off, edge.b)};
+    EdgeFunction held{formats.unit.hold(edge.a), formats.unit.hold(edge.b), 0, edge.piece};
+    held.c = arithmetic.long_mac(formats.edge_offset, 0, -held.a, foot.x, -held.b, foot.y);
+    return held;
+}
+
+/// Adds a piece of the same polygon to the voxel that it already has in this cell. The point is that of the
+/// largest piece.
+void merge(Voxel& voxel, const Voxel& piece) {
+    voxel.near_level = std::min(voxel.near_level, piece.near_level);
+    voxel.far_level = std::max(voxel.far_level, piece.far_level);
+    if (piece.area <= voxel.area) return;
+    voxel.area = piece.area;
+    voxel.point = piece.point;
+}
+
+/// What a span makes of its current cell.
+struct Made {
+    Voxel voxel;
+    std::array<EdgeFunction, 4> edges;  ///< rung `edge`: those that cross the voxel
+    int edge_count = 0;
+};
+
+/// Sets the run's ends from its levels.
+void set_ends(Voxel& voxel, double level, const Arithmetic& arithmetic) {
     const Formats& formats = arithmetic.formats();
     voxel.near = arithmetic.hold(formats.depth, voxel.near_level * level);
     voxel.far = arithmetic.hold(formats.depth, voxel.far_level * level);
     if (arithmetic.exact()) return;
     // Levels may be finer than the word's last bit, but a run is never empty.
     voxel.far = std::max(voxel.far, voxel.near + formats.depth.step());
-    if (voxel.base == voxel.near) return;
+}
+
+/// Sets the run of a voxel that reaches from depth `near` to `far`.
+void set_run(Voxel& voxel, double near, double far, const PictureSettings& settings, double level,
+             const Arithmetic& arithmetic) {
+    const int last = settings.depth_levels - 1;
+    voxel.near_level = std::clamp(int(std::floor(near / level)), 0, last);
+    voxel.far_level = std::clamp(int(std::floor(far / level)), 0, last) + 1;
+    set_ends(voxel, level, arithmetic);
+    if (!arithmetic.exact()) voxel.base = voxel.near;
+}
+
+/// Rungs above `depth`: adds what the polygon's part in the cell says. False if there is none.
+bool set_part(Made& made, const Span& span, const PictureSettings& settings, double level,
+              const Arithmetic& arithmetic) {
+    Voxel& voxel = made.voxel;
+    const PartBounds bounds{span.plane, span.drop, span.edges.data(), span.edge_count};
+    const Box column{-span.slack, dvec3(1, 1, level * settings.depth_levels) + span.slack};
+    const Part part = part_in(bounds, column, arithmetic);
+    if (part.empty()) return false;  // the row's part only passes by
+    const double room = span.slack.z + arithmetic.hair();
+    set_run(voxel, part.low.z - room, part.high.z + room, settings, level, arithmetic);
+    const bool with_mask = settings.hit == HitTest::mask;
+    const Coverage coverage = cover(bounds, part, voxel.near, voxel.far, with_mask, arithmetic);
+    if (!coverage.touched) return false;
+    voxel.mask = coverage.mask;
+    voxel.window = coverage.window;
+    voxel.area = part.area;
+    const dvec3& middle = part.middle;
+    voxel.point =
+        hold_point({std::clamp(middle.x, 0.0, 1.0), std::clamp(middle.y, 0.0, 1.0), middle.z}, arithmetic);
+    if (settings.hit != HitTest::edge) return true;
+    for (int i = 0; i < coverage.crossings; ++i) {
+        const EdgeFunction& edge = span.edges[std::size_t(coverage.crossing[std::size_t(i)])];
+        made.edges[std::size_t(made.edge_count++)] = voxel_edge(edge, voxel, arithmetic);
+    }
+    return true;
+}
+
+/// The voxel without plane and normals; nothing if the polygon does not touch the cell.
+std::optional<Made> make_voxel(const Span& span, const PictureSettings& settings, double level,
+                               const Arithmetic& arithmetic) {
+    Made made;
+    made.voxel.polygon = span.polygon;
+    made.voxel.object = span.object;
+    made.voxel.drop = std::uint8_t(span.drop);
+    if (settings.hit == HitTest::depth) {
+        set_run(made.voxel, span.z, span.z, settings, level, arithmetic);
+        made.voxel.point = hold_point({0.5, 0.5, span.z}, arithmetic);
+    } else if (!set_part(made, span, settings, level, arithmetic)) {
+        return std::nullopt;
+    }
+    return made;
+}
+
+/// Moves the voxel's edges, which count from the run's beginning, along with it.
+void move_base(Voxel& voxel, CellStore& store, const Arithmetic& arithmetic) {
+    if (arithmetic.exact() || voxel.base == voxel.near) return;
     const double shift = voxel.near - voxel.base;
     voxel.base = voxel.near;
     if (voxel.drop == 2) return;  // z is not among (u, v)
     for (std::uint32_t i = 0; i < voxel.edge_count; ++i) {
         EdgeFunction& edge = store.edges[voxel.first_edge + i];
-        edge.c = arithmetic.mac(formats.edge_offset, edge.c, edge.b, shift);
+        edge.c = arithmetic.mac(arithmetic.formats().edge_offset, edge.c, edge.b, shift);
     }
 }
 
-/// An edge of the voxel, in words; `whole` is the voxel's footprint.
-EdgeFunction voxel_edge(const EdgeFunction& edge, const Voxel& voxel, const Rectangle& whole,
-                        const Arithmetic& arithmetic) {
-    if (arithmetic.exact()) return edge;
-    const Formats& formats = arithmetic.formats();
-    const dvec2 shift = project({0, 0, voxel.base}, voxel.drop);
-    EdgeFunction relative = edge;
-    relative.c = edge.at(shift);
-    return hold_edge(relative, 0.5 * (whole.low + whole.high) - shift, formats.unit, formats.edge_offset);
-}
-
-/// Adds a piece of the same polygon to the voxel that it already has in this cell.
-void merge(Voxel& voxel, const Voxel& piece, const Arithmetic& arithmetic) {
-    voxel.near_level = std::min(voxel.near_level, piece.near_level);
-    voxel.far_level = std::max(voxel.far_level, piece.far_level);
-    const double area = voxel.area + piece.area;
-    if (area > 0) {
-        voxel.point = (voxel.area * voxel.point + piece.area * piece.point) / area;
-        voxel.point = hold_point(voxel.point, arithmetic);
+/// Adds the edges of a piece to those of the voxel that it has joined.
+void add_piece(Voxel& voxel, const Made& piece, CellStore& store, const Arithmetic& arithmetic) {
+    if (piece.edge_count == 0) {  // the piece covers the whole cell
+        store.edges.resize(voxel.first_edge);
+        voxel.edge_count = voxel.pieces = 0;
+        return;
     }
-    voxel.area = area;
+    for (int i = 0; i < piece.edge_count; ++i) {
+        EdgeFunction edge = piece.edges[std::size_t(i)];
+        edge.piece = voxel.pieces;
+        if (voxel.drop != 2 && voxel.base != piece.voxel.base) {  // the merged run begins nearer
+            edge.c = arithmetic.mac(arithmetic.formats().edge_offset, edge.c, edge.b,
+                                    voxel.base - piece.voxel.base);
+        }
+        store.edges.push_back(edge);
+    }
+    voxel.edge_count += std::uint32_t(piece.edge_count);
+    ++voxel.pieces;
 }
 
 }  // namespace
 
 bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level,
                  const Arithmetic& arithmetic) {
-    const double hair = arithmetic.hair();
-    Voxel voxel;
-    voxel.polygon = span.polygon;
-    voxel.object = span.object;
-    voxel.drop = std::uint8_t(span.drop);
-    const std::vector<dvec3> part = cell_part(span);
-    if (part.empty()) return false;  // only touches the cell's side: the neighbour has it
-    double near = std::max(span.near, span.z_min);
-    double far = std::min(span.far, span.z_max);
-    // Where a side crosses the cell, the plane continues past it; so the run is limited to the part inside.
-    double part_near = part.front().z;
-    double part_far = part.front().z;
-    for (const dvec3& p : part) {
-        part_near = std::min(part_near, p.z);
-        part_far = std::max(part_far, p.z);
-    }
-    near = std::max(near, part_near - span.slack.z);
-    far = std::min(far, part_far + span.slack.z);
-    if (settings.hit == HitTest::depth) {
-        double z = 0;
-        if (!covers_centre(span, hair, z)) return false;
-        near = far = z;
-    } else if (near > far) {
-        if (near > far + hair) return false;  // the part does not reach this cell
-        std::swap(near, far);
-    }
-    const int last = settings.depth_levels - 1;
-    const double room = settings.hit == HitTest::depth ? 0 : hair;
-    voxel.near_level = std::clamp(int(std::floor((near - room) / level)), 0, last);
-    voxel.far_level = std::clamp(int(std::floor((far + room) / level)), 0, last) + 1;
-
-    std::array<EdgeFunction, 4> crossing;
-    int crossings = 0;
-    if (settings.hit != HitTest::depth) {
-        const Rectangle whole = footprint(voxel, level);
-        for (int i = 0; i < span.edge_count; ++i) {
-            const EdgeFunction& edge = span.edges[std::size_t(i)];
-            if (most_over(edge, whole) < -hair) return false;  // wholly outside: touches only the run's box
-            if (least_over(edge, whole) < -hair) crossing[std::size_t(crossings++)] = edge;
-        }
-        if (settings.hit == HitTest::mask) {
-            const Rectangle bounds = part_bounds(part, span.drop);
-            voxel.mask =
-                coverage(crossing.data(), crossings, set_window(voxel, whole, bounds, hair), bounds, hair);
-        }
-    }
-    set_point(voxel, part);
-    voxel.point = hold_point(voxel.point, arithmetic);
-    set_run(voxel, store, level, arithmetic);
-    if (settings.hit == HitTest::edge) {
-        const Rectangle whole = footprint(voxel, level);
-        for (int i = 0; i < crossings; ++i) {
-            EdgeFunction& edge = crossing[std::size_t(i)];
-            edge = voxel_edge(edge, voxel, whole, arithmetic);
-        }
-    }
+    const std::optional<Made> made = make_voxel(span, settings, level, arithmetic);
+    if (!made) return false;
     // The pieces of one polygon arrive one after the other. Mask voxels are not merged: each mask has its own
     // window.
     const bool mergeable = settings.hit != HitTest::mask;
     if (mergeable && !store.voxels.empty() && store.voxels.back().polygon == span.polygon) {
         Voxel& before = store.voxels.back();
-        merge(before, voxel, arithmetic);
-        set_run(before, store, level, arithmetic);
-        set_functions(before, span, settings.normals, arithmetic);
-        if (settings.hit == HitTest::edge && before.pieces > 0) {
-            if (crossings == 0) {
-                store.edges.resize(before.first_edge);
-                before.edge_count = before.pieces = 0;
-            } else {
-                for (int i = 0; i < crossings; ++i) {
-                    EdgeFunction edge = crossing[std::size_t(i)];
-                    edge.piece = before.pieces;
-                    if (before.drop != 2 && before.base != voxel.base) {  // the merged run begins nearer
-                        edge.c = arithmetic.mac(arithmetic.formats().edge_offset, edge.c, edge.b,
-                                                before.base - voxel.base);
-                    }
-                    store.edges.push_back(edge);
-                }
-                before.edge_count += std::uint32_t(crossings);
-                ++before.pieces;
-            }
-        }
+        merge(before, made->voxel);
+        set_ends(before, level, arithmetic);
+        move_base(before, store, arithmetic);
+        set_functions(before, span, settings, arithmetic);
+        if (settings.hit == HitTest::edge && before.pieces > 0) add_piece(before, *made, store, arithmetic);
         return true;
     }
     if (settings.voxel_capacity > 0 && store.voxels.size() >= std::size_t(settings.voxel_capacity)) {
@@ -278,14 +224,13 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
         store.last_overflowed = span.polygon;
         return false;
     }
-    set_functions(voxel, span, settings.normals, arithmetic);
-    if (settings.hit == HitTest::edge && crossings > 0) {
-        voxel.first_edge = std::uint32_t(store.edges.size());
-        voxel.edge_count = std::uint32_t(crossings);
+    Voxel voxel = made->voxel;
+    set_functions(voxel, span, settings, arithmetic);
+    voxel.first_edge = std::uint32_t(store.edges.size());
+    if (made->edge_count > 0) {
+        voxel.edge_count = std::uint32_t(made->edge_count);
         voxel.pieces = 1;
-        store.edges.insert(store.edges.end(), crossing.begin(), crossing.begin() + crossings);
-    } else {
-        voxel.first_edge = std::uint32_t(store.edges.size());
+        store.edges.insert(store.edges.end(), made->edges.begin(), made->edges.begin() + made->edge_count);
     }
     store.voxels.push_back(voxel);
     if (settings.display == Display::gouraud)

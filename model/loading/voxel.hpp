@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "model/loading/coverage.hpp"
 #include "model/loading/span.hpp"
 #include "model/settings/settings.hpp"
 
@@ -31,7 +32,7 @@ struct Voxel {
     /// It frames the polygon's part, so that all 64 bits describe that part.
     std::array<std::uint8_t, 4> window{0, 32, 0, 32};
     dvec3 point{0, 0, 0};  ///< the voxel's own point (z absolute): precast and memo shadows, `voxel` normals
-    double area = 0;       ///< of the polygon in the cell, while loading: weight of `point` in a merge
+    double area = 0;       ///< of the largest piece, in the projection; only while loading
 };
 
 /// Depth range of a voxel, which a ray is compared with first. Stored apart from the voxel, so that the
@@ -63,8 +64,6 @@ struct CellStore {
 /// `depth`: does not cover its centre), or if the store is full; then `overflowed` counts it.
 bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level,
                  const Arithmetic& arithmetic);
-
-constexpr int window_steps = 32;
 
 /// Bits of one voxel without its edges, and bits of one edge; docs/reference/cell.md has the table.
 struct VoxelBits {

@@ -19,11 +19,13 @@ bool index_fits(const Material& m, const Formats& f) {
 }
 
 bool has_single_normal(const Polygon& polygon, const Formats& formats) {
-    const dvec2 middle = project(polygon.vertices.front(), polygon.drop);
+    dvec3 centre{0, 0, 0};
+    for (const dvec3& v : polygon.vertices) centre += v / double(polygon.vertices.size());
+    const dvec2 middle = project(centre, polygon.drop);
     bool single = false;
     const double most = scale_by(1, formats.normal.integer_bits() - 1);
     const NormalField near{polygon.normal.at(middle), polygon.normal.du, polygon.normal.dv};
-    fill_words(near, dvec2(0), most, least_normal(formats.normal), &single);
+    fill_words(near, near.base, most, least_normal(formats.normal), &single);
     return single;
 }
 

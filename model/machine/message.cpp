@@ -25,6 +25,42 @@ int slot_address_bits(const PictureSettings& picture, const MachineSettings& mac
     return picture.shadows == Shadows::per_hit ? slot : std::max(slot, field::voxel_index);
 }
 
+namespace {
+
+/// Load messages are of loading words.
+void set_loading_bits(MessageBits& bits, const PictureSettings& picture, const Formats& formats) {
+    const int word = formats.word_bits;
+    const int loading = formats.loading.bits();
+    const bool depth = picture.hit == HitTest::depth;
+    const bool gouraud = picture.display == Display::gouraud;
+    const int columns = 2 * bits_for(picture.width);
+    const int rows = 2 * bits_for(picture.height);
+    const int plane = 3 * loading + 3;  // two slopes, an offset; the axis that it drops, its sign
+    const int normals = 9 * loading;
+    bits.edge = 3 * loading;
+    if (depth) bits.span_edges = 0;
+    bits.span = field::type + field::polygon_id + columns + (gouraud ? 6 * loading : 0);
+    if (depth && picture.normals == Normals::voxel) {
+        bits.span += 2 * loading + 6 * loading;  // Z, DZ, N, DN (paper, section 3.1)
+    } else if (depth) {
+        bits.span += 2 * loading + field::axis + normals;
+    } else {
+        bits.span += plane + loading + normals + field::edges;
+    }
+    bits.trapeze = field::type + rows + columns + field::edges;
+    if (gouraud) bits.trapeze += field::edges + 4 * 6 * loading;  // places and intensities of four corners
+    bits.surface = field::type + field::polygon_id + bits_for(picture.height) + plane + loading + normals;
+    bits.polygon = field::type + field::polygon_id + plane + loading + normals + field::vertices;
+    bits.vertex = 3 * loading;
+    bits.features = field::type + feature_bits(formats);
+    bits.end_of_scene = field::type;
+    bits.viewer = field::type + formats.place_bits() + 1 + field::faces + 3 * word + field::level_count +
+                  field::level_mantissa + Formats::exponent_bits + field::source_count;
+    bits.source = formats.place_bits() + 3 * word;
+}
+
+}  // namespace
+
 MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
                          const Formats& formats) {
     const int word = formats.word_bits;
@@ -39,21 +75,7 @@ MessageBits message_bits(const PictureSettings& picture, const MachineSettings& 
     bits.shadow_ray = field::type + way + word + field::polygon_id + address + 1;
     bits.intensity = field::type + 3 * word + address;
     bits.verdict = field::type + address;
-    const int loading = formats.loading.bits();
-    const int columns = 2 * bits_for(picture.width);
-    const int gouraud = picture.display == Display::gouraud ? 6 * loading : 0;
-    const int normals = 9 * loading;
-    const int plane = 4 * loading + 3;  // two slopes, offset, slack; dominant axis and its sign
-    const int edges = 4 * 3 * loading + 3;
-    // X1, Xr, near and far with their increment and bounds, plane, normal field, edges (paper, section 3.1).
-    bits.span = field::type + field::polygon_id + columns + 5 * loading + plane + normals + edges + gouraud;
-    bits.trapeze = field::type + field::polygon_id + 4 * 3 * loading + plane + normals + edges + 2 * gouraud;
-    bits.polygon = field::type + field::polygon_id + plane + normals;
-    bits.vertex = 3 * loading;
-    bits.features = field::type + feature_bits(formats);
-    bits.end_of_scene = field::type;
-    bits.viewer = field::type + formats.place_bits() + 6;
-    bits.source = formats.place_bits() + 3 * word;
+    set_loading_bits(bits, picture, formats);
     return bits;
 }
 

@@ -29,21 +29,26 @@ struct MessageBits {
     int ray = 0;
     int shadow_ray = 0;  ///< a ray with its distance to the source
     int intensity = 0;
-    int verdict = 0;  ///< also the postponed notice
-    int span = 0;
-    int trapeze = 0;
+    int verdict = 0;     ///< also the postponed notice
+    int span = 0;        ///< without its edges
+    int trapeze = 0;     ///< without its edges
+    int edge = 0;        ///< of a span or a trapeze
+    int span_edges = 4;  ///< at most: rung `depth` needs none
+    int surface = 0;
     int polygon = 0;  ///< without its vertices
     int vertex = 0;
     int features = 0;
     int end_of_scene = 0;
+    int longest_span() const { return span + span_edges * edge; }
+    int longest_trapeze() const { return trapeze + 4 * edge; }
     int setup(std::size_t sources) const { return viewer + int(sources) * source; }
     int viewer = 0;
     int source = 0;
 };
 /// Bits of the slot, or of the voxel, that an answer is for.
 int slot_address_bits(const PictureSettings& picture, const MachineSettings& machine);
-/// Bits of a ray's depth. Outside the cube, on the way to the border, a ray is before it or behind it: so there
-/// are more of them than for a depth in a voxel.
+/// Bits of a ray's depth. Outside the cube, on the way to the border, a ray is before it or behind it: so
+/// there are more of them than for a depth in a voxel.
 inline int wire_depth_bits(const Formats& formats) { return formats.depth.bits(); }
 MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
                          const Formats& formats);

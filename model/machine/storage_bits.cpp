@@ -124,8 +124,8 @@ RegisterBits register_bits(const PictureSettings& picture, const MachineSettings
     bits.outputs = side_count * std::max(ray, messages.intensity);
     bits.traversal = traversal_bits(machine, formats, ray_inputs);
     bits.shading = shading_bits(slot_bits(picture, machine, formats, sources), machine, messages, formats);
-    bits.loading = std::max(messages.span - ray, 0);
-    bits.latches = messages.viewer + 3 * formats.word_bits + int(sources) * messages.source;
+    bits.loading = std::max(messages.longest_span() - ray, 0);
+    bits.latches = messages.viewer + int(sources) * messages.source;  // the background is the viewer's
     return bits;
 }
 

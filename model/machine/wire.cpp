@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
 #include "model/numbers/bits.hpp"
@@ -13,56 +12,7 @@ namespace {
 
 constexpr std::uint32_t no_polygon_code = (1U << field::polygon_id) - 1;
 
-[[noreturn]] void refuse(const char* name, double value, int bits) {
-    std::ostringstream text;
-    text.precision(17);
-    text << "the field " << name << " of " << bits << " bits has no code for " << value;
-    throw std::range_error(text.str());
-}
-
-/// Appends a whole number from 0 up.
-void put_number(WireBits& bits, const char* name, std::uint64_t value, int width) {
-    if (width < 64 && value >> unsigned(width) != 0) refuse(name, double(value), width);
-    bits.put(value, width);
-}
-
-double get_word(WireBits& bits, const Format& format, int width) {
-    return double(bits.get_signed(width)) * format.step();
-}
-
 }  // namespace
-
-void WireBits::put(std::uint64_t value, int width) {
-    if (size_ + width > most) throw std::length_error("a message of over " + std::to_string(most) + " bits");
-    for (int bit = width - 1; bit >= 0; --bit, ++size_) {
-        if (value >> unsigned(bit) & 1) words_[std::size_t(size_ / 64)] |= 1ULL << unsigned(63 - size_ % 64);
-    }
-}
-
-std::uint64_t WireBits::get(int width) {
-    if (read_ + width > size_)
-        throw std::length_error("a message of only " + std::to_string(size_) + " bits");
-    std::uint64_t value = 0;
-    for (int bit = 0; bit < width; ++bit, ++read_) {
-        value = value << 1 | (words_[std::size_t(read_ / 64)] >> unsigned(63 - read_ % 64) & 1);
-    }
-    return value;
-}
-
-std::int64_t WireBits::get_signed(int width) {
-    const std::uint64_t value = get(width);
-    if (width == 0 || width == 64 || !(value >> unsigned(width - 1) & 1)) return std::int64_t(value);
-    return std::int64_t(value) - (std::int64_t(1) << unsigned(width));
-}
-
-std::string WireBits::hex() const {
-    constexpr const char* digits = "0123456789abcdef";
-    std::string text;
-    for (int at = 0; at < size_; at += 4) {
-        text += digits[words_[std::size_t(at / 64)] >> unsigned(60 - at % 64) & 15];
-    }
-    return text;
-}
 
 Wire::Wire(const PictureSettings& picture, const MachineSettings& machine, const Formats& formats)
     : formats_(formats),
@@ -74,13 +24,6 @@ Wire::Wire(const PictureSettings& picture, const MachineSettings& machine, const
         throw std::invalid_argument("the numbers of exact arithmetic are no words");
 }
 
-void Wire::put_word(WireBits& bits, const char* name, double value, const Format& format, int width) const {
-    const double word = value / format.step();
-    const double most = std::ldexp(1.0, width - 1);
-    if (word != std::floor(word) || word < -most || word >= most) refuse(name, value, width);
-    bits.put_signed(std::int64_t(word), width);
-}
-
 /// A mantissa without its sign, which is the direction's, and an exponent of base 2: 1/x = mantissa ·
 /// 2^(exponent − word + 1). Mantissa 0: the ray never crosses such a side.
 void Wire::put_reciprocal(WireBits& bits, const char* name, double value) const {
@@ -88,7 +31,7 @@ void Wire::put_reciprocal(WireBits& bits, const char* name, double value) const 
     const double mantissa = std::ldexp(std::frexp(std::abs(value), &exponent), formats_.word_bits - 1);
     const int limit = 1 << (Formats::exponent_bits - 1);
     if (mantissa != std::floor(mantissa) || exponent < -limit || exponent >= limit)
-        refuse(name, value, formats_.word_bits + Formats::exponent_bits);
+        refuse_value(name, value, formats_.word_bits + Formats::exponent_bits);
     put_number(bits, name, std::uint64_t(mantissa), formats_.word_bits);
     bits.put_signed(exponent, Formats::exponent_bits);
 }
@@ -150,7 +93,7 @@ WireBits Wire::pack(const Ray& ray) const {
         put_word(bits, "weight", ray.weight, formats_.unit, formats_.word_bits);
     }
     if (ray.leaves >= no_polygon_code && ray.leaves != no_polygon)
-        refuse("polygon left", ray.leaves, field::polygon_id);
+        refuse_value("polygon left", ray.leaves, field::polygon_id);
     bits.put(ray.leaves == no_polygon ? no_polygon_code : ray.leaves, field::polygon_id);
     if (!shadow) put_number(bits, "generation", ray.generation, field::generation);
     bits.put(ray.outside ? 1 : 0, 1);

@@ -1,50 +1,17 @@
 // Rays and answers bit by bit, as the wires carry them (docs/reference/messages.md).
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "model/machine/message.hpp"
+#include "model/machine/wire_bits.hpp"
 #include "model/settings/settings.hpp"
 
 namespace raycell {
 
-/// The bits of one message, first sent first.
-class WireBits {
-  public:
-    static constexpr int most = 448;
-
-    /// Appends the low `width` bits of `value`, the most significant one first; 0 to 64.
-    void put(std::uint64_t value, int width);
-    /// Reads on where the last get() ended.
-    std::uint64_t get(int width);
-    /// The same for two's complement.
-    void put_signed(std::int64_t value, int width) { put(std::uint64_t(value), width); }
-    std::int64_t get_signed(int width);
-
-    int size() const { return size_; }
-    /// Number of bits read so far.
-    int read() const { return read_; }
-    /// Four bits a digit, the first bit sent on the left, filled with zeros at the end.
-    std::string hex() const;
-
-  private:
-    std::array<std::uint64_t, most / 64> words_{};
-    int size_ = 0;
-    int read_ = 0;
-};
-
 /// Type codes, the first three bits of a message.
 enum class WireType : std::uint8_t { ray, shadow_ray, intensity, lit, blocked, postponed };
-
-/// A field of a message's layout.
-struct WireField {
-    std::string name;
-    int bits;
-    std::string meaning;  ///< format or code
-};
 
 /// Packs and unpacks the messages of one machine in words. What a message does not carry is what its receiver
 /// does not use or can tell from the rest: the ray's kind (from type, slot and child), a shadow ray's
@@ -68,7 +35,6 @@ class Wire {
 
   private:
     struct Address;  // home, slot, child
-    void put_word(WireBits& bits, const char* name, double value, const Format& format, int width) const;
     void put_place(WireBits& bits, const Ray& ray) const;
     void get_place(WireBits& bits, Ray& ray) const;
     void put_reciprocal(WireBits& bits, const char* name, double value) const;

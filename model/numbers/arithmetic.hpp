@@ -90,6 +90,12 @@ class Arithmetic {
         if (exact_) return c + (a1 * b1 + a2 * b2 + a3 * b3);
         return narrow_ ? f.hold(a1 * b1 + a2 * b2 + a3 * b3 + c) : wide(f, c, a1, b1, a2, b2, a3, b3);
     }
+    /// The same for factors longer than a word, loading words among them.
+    double long_mac(const Format& f, double c, double a1, double b1, double a2 = 0, double b2 = 0,
+                    double a3 = 0, double b3 = 0) const {
+        if (exact_) return c + (a1 * b1 + a2 * b2 + a3 * b3);
+        return wide(f, c, a1, b1, a2, b2, a3, b3);
+    }
     double product(const Format& f, double a, double b) const { return mac(f, 0.0, a, b); }
     double dot(const Format& f, const dvec3& a, const dvec3& b) const {
         return mac(f, 0.0, a.x, b.x, a.y, b.y, a.z, b.z);

@@ -9,6 +9,13 @@ constexpr int generation = 6;    ///< --max-depth up to 62
 constexpr int child = 6;         ///< which child or source of a slot: up to 64
 constexpr int age = 17;          ///< cycles, up to the starvation bound plus an epoch
 constexpr int edge_count = 8;    ///< of a voxel's part: up to 255
+constexpr int axis = 2;          ///< x, y or z
+constexpr int edges = 3;         ///< of a trapeze or a span: up to four
+constexpr int faces = 6;         ///< of the cube, a bit each
+constexpr int vertices = 16;     ///< of a polygon
+constexpr int source_count = 7;  ///< up to 64
+constexpr int level_count = 16;  ///< depth levels less one
+constexpr int level_mantissa = 16;
 constexpr int voxel_index = 10;  ///< up to 1024 voxels in a cell
 
 }  // namespace raycell::field

@@ -15,13 +15,17 @@ void RowDistributor::take(LoadItem& item, Cycle now) {
     passed_on_ = false;
     const bool last_row = row_ + 1 == env.height();
     Cycle cycles = env.costs().distribution_pass;
-    if (item.kind == LoadItem::Kind::trapeze) {
+    if (item.kind == LoadItem::Kind::surface) {
+        surface_ = item.trapeze;
+        goes_down_ = !last_row && surface_.last_row > row_;
+    } else if (item.kind == LoadItem::Kind::trapeze) {
+        static_cast<Surface&>(item.trapeze) = surface_;
         goes_down_ = !last_row && item.trapeze.reaches_below(row_);
         const bool gouraud = env.context.settings.display == Display::gouraud;
-        if (row_ >= item.trapeze.first_row(env.height())) {
+        if (row_ >= item.trapeze.rows.first) {
             cycles = env.costs().distribution_span;
-            auto span = cut_span(item.trapeze, row_, env.width(), env.context.arithmetic,
-                                 gouraud ? &item.intensities : nullptr);
+            auto span = cut_span(item.trapeze, row_, env.context.scene.frame.depth, env.context.settings.hit,
+                                 env.context.arithmetic, gouraud ? &item.intensities : nullptr);
             if (span) {
                 to_row_ = env.pools.loads.take();
                 to_row_->kind = LoadItem::Kind::span;
@@ -50,11 +54,11 @@ Cycle RowDistributor::step(Cycle now) {
     if (now < ready_) return ready_;
     if (to_row_ && east->can_send(0, retry)) {
         ++env.meters.counters.loads_sent;
-        east->send(0, Message(to_row_), env.cycles_for(env.load_bits(*to_row_)));
+        send_load(*east.operator->(), *to_row_, env);
         to_row_ = nullptr;
     }
     if (goes_down_ && down->can_send(0, retry)) {
-        down->send(0, Message(item_), env.cycles_for(env.load_bits(*item_)));
+        send_load(*down.operator->(), *item_, env);
         goes_down_ = false;
         passed_on_ = true;
     }

@@ -33,6 +33,7 @@ class RowDistributor : public Stage {
     void take(LoadItem& item, Cycle now);
 
     int row_;
+    Surface surface_;             ///< of the trapezes that follow
     LoadItem* item_ = nullptr;    ///< the message at work, at the head of the input
     LoadItem* to_row_ = nullptr;  ///< made for the row, still to be injected
     bool goes_down_ = false;      ///< item_ must still be passed on

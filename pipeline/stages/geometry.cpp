@@ -54,7 +54,7 @@ Cycle Geometry::step(Cycle now) {
     if (now < ready_) return ready_;
     Cycle retry = never;
     if (!out->can_send(0, retry)) return retry;
-    out->send(0, Message(item_), env.cycles_for(env.load_bits(*item_)));
+    send_load(*out.operator->(), *item_, env);
     item_ = nullptr;
     return now + 1;
 }

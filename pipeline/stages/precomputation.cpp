@@ -7,8 +7,10 @@ void Precomputation::take(LoadItem& item) {
         item_ = &item;  // broadcast: passed on in its order
         return;
     }
-    trapezes_ = precompute(item.polygon, environment().context.arithmetic);
+    const Environment& env = environment();
+    trapezes_ = precompute(item.polygon, env.context.arithmetic, env.width(), env.height());
     next_ = 0;
+    surface_sent_ = false;
     environment().pools.loads.give_back(&item);
 }
 
@@ -22,12 +24,18 @@ Cycle Precomputation::step(Cycle now) {
         take(*message.load);
         ready_ = now + 1;
     }
+    if (!item_ && next_ < trapezes_.size() && !surface_sent_) {
+        item_ = env.pools.loads.take();
+        item_->kind = LoadItem::Kind::surface;
+        static_cast<Surface&>(item_->trapeze) = trapezes_[0];
+        surface_sent_ = true;
+    }
     if (!item_ && next_ < trapezes_.size()) {
         item_ = env.pools.loads.take();
         item_->kind = LoadItem::Kind::trapeze;
         item_->trapeze = trapezes_[next_++];
         if (env.context.settings.display == Display::gouraud) {
-            item_->intensities = shade_corners(item_->trapeze, env.context.scene);
+            item_->intensities = shade_corners(item_->trapeze, env.context.scene, env.context.arithmetic);
         }
         ready_ = now + env.costs().precomputation_trapeze;
         work(now, env.costs().precomputation_trapeze);
@@ -36,7 +44,7 @@ Cycle Precomputation::step(Cycle now) {
     if (!item_) return now + 1;
     if (now < ready_) return ready_;
     if (!out->can_send(0, retry)) return retry;
-    out->send(0, Message(item_), env.cycles_for(env.load_bits(*item_)));
+    send_load(*out.operator->(), *item_, env);
     item_ = nullptr;
     return now + 1;
 }

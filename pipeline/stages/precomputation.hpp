@@ -26,6 +26,7 @@ class Precomputation : public Stage {
 
     std::vector<Trapeze> trapezes_;  ///< of the polygon at work
     std::size_t next_ = 0;
+    bool surface_sent_ = false;
     LoadItem* item_ = nullptr;  ///< the message to send
     Cycle ready_ = 0;
 };

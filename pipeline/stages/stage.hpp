@@ -6,7 +6,7 @@
 
 #include "cells/channels/link.hpp"
 #include "cells/deadlock/cell_waits.hpp"
-#include "cells/environment.hpp"
+#include "cells/passing.hpp"
 
 namespace raycell {
 

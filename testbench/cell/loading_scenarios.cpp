@@ -45,7 +45,6 @@ std::vector<Scenario> loading_scenarios() {
         // In the coordinates of the next cell: x here is x - 1 there.
         for (int i = 0; i < next.span.edge_count; ++i)
             next.span.edges[std::size_t(i)].c += next.span.edges[std::size_t(i)].a;
-        for (int i = 0; i < next.span.outline_count; ++i) next.span.outline[std::size_t(i)].x -= 1;
         script.in(1, Side::west, 1, here)
             .take(2 + load_voxel, Side::west, 0)
             .out(2 + load_voxel, Side::east, span_link, next);

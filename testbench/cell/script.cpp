@@ -103,9 +103,9 @@ LoadItem span_of(const CellSetup& setup, std::uint32_t polygon, const dvec3& cor
     const Arithmetic arithmetic;
     LoadItem item = load_item(LoadItem::Kind::span);
     const Polygon whole = make_polygon(polygon, 0, {corner, corner + u, corner + u + v, corner + v});
-    const std::vector<Trapeze> trapezes = precompute(whole, arithmetic);
-    const auto span =
-        trapezes.size() == 1 ? cut_span(trapezes[0], y, setup.picture.width, arithmetic) : std::nullopt;
+    const std::vector<Trapeze> trapezes = precompute(whole, arithmetic, setup.picture.width, setup.picture.height);
+    const auto span = trapezes.size() == 1 ? cut_span(trapezes[0], y, setup.scene.frame.depth, setup.picture.hit, arithmetic)
+                                           : std::nullopt;
     if (!span)
         throw std::logic_error("a rectangle of a scenario must be one trapeze that meets the cell's row");
     item.span = *span;

@@ -166,7 +166,10 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
           {"in_flight", result.in_flight.answers}}},
         {"load",
          {{"sent", c.loads_sent}, {"delivered", c.loads_delivered}, {"in_flight", result.in_flight.loads}}}};
-    if (c.packed > 0) json["messages"]["packed"] = c.packed;
+    if (c.packed_load > 0) {
+        json["messages"]["packed"] = c.packed;
+        json["messages"]["packed_load"] = c.packed_load;
+    }
     json["voxels"] = {{"stored", storage.voxels},
                       {"max_per_cell", storage.max_voxels},
                       {"mean_per_occupied_cell",
@@ -182,8 +185,10 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                             {"shadow_ray", messages.shadow_ray},
                             {"intensity", messages.intensity},
                             {"verdict", messages.verdict},
-                            {"span", messages.span},
-                            {"trapeze", messages.trapeze}};
+                            {"span", messages.longest_span()},
+                            {"trapeze", messages.longest_trapeze()},
+                            {"surface", messages.surface},
+                            {"edge", messages.edge}};
     const std::size_t sources = scene.sources.size();
     const StorageBits stored_bits = storage_bits(picture, machine, formats, sources);
     json["storage_bits"] = {{"ray_buffers", stored_bits.ray_buffers},

@@ -10,7 +10,8 @@ namespace {
 
 constexpr const char* ray_kinds[] = {"primary", "reflected", "refracted", "shadow", "memo", "precast"};
 constexpr const char* answer_kinds[] = {"intensity", "lit", "blocked", "postponed"};
-constexpr const char* load_kinds[] = {"setup", "features", "polygon", "trapeze", "span", "end_of_scene"};
+constexpr const char* load_kinds[] = {"setup",   "features", "polygon",     "surface",
+                                      "trapeze", "span",     "end_of_scene"};
 
 struct Choice {
     const char* const* words;
@@ -201,12 +202,10 @@ void fields_of_span(A& a, S& span) {
     vector(a, {"n0x", "n0y", "n0z"}, span.normal.base, f);
     vector(a, {"nux", "nuy", "nuz"}, span.normal.du, f);
     vector(a, {"nvx", "nvy", "nvz"}, span.normal.dv, f);
-    a.word("near", span.near, f);
-    a.word("d_near", span.d_near, f);
-    a.word("far", span.far, f);
-    a.word("d_far", span.d_far, f);
-    a.word("z_min", span.z_min, f);
-    a.word("z_max", span.z_max, f);
+    a.word("z", span.z, f);
+    a.word("dz", span.dz, f);
+    vector(a, {"ncx", "ncy", "ncz"}, span.n, f);
+    vector(a, {"dncx", "dncy", "dncz"}, span.dn, f);
     vector(a, {"red", "green", "blue"}, span.intensity, f);
     vector(a, {"d_red", "d_green", "d_blue"}, span.d_intensity, f);
     a.number("edges", span.edge_count, 4);
@@ -216,9 +215,6 @@ void fields_of_span(A& a, S& span) {
         a.word("b", edge.b, f);
         a.word("c", edge.c, f);
     }
-    a.number("corners", span.outline_count, 8);
-    for (int i = 0; i < span.outline_count; ++i)
-        vector(a, {"corner_x", "corner_y", "corner_z"}, span.outline[std::size_t(i)], f);
 }
 
 template <typename A, typename L>
@@ -262,14 +258,12 @@ std::vector<std::string> field_names(const std::vector<std::string>& tokens) {
             if (kind == load_kinds[i]) item.kind = LoadItem::Kind(i);
         }
         fields_of_load(names, item);
-        // The text says how many edges and corners follow.
-        for (const auto& [name, count] :
-             {std::pair{"edges", &item.span.edge_count}, std::pair{"corners", &item.span.outline_count}}) {
-            const auto at =
-                std::size_t(std::find(names.all.begin(), names.all.end(), name) - names.all.begin());
-            const std::string& number = at + 1 < tokens.size() ? tokens[at + 1] : "";
-            if (number.size() == 1 && number[0] >= '0' && number[0] <= '8') *count = number[0] - '0';
-            item.span.edge_count = std::min(item.span.edge_count, 4);
+        // The text says how many edges follow.
+        const auto at =
+            std::size_t(std::find(names.all.begin(), names.all.end(), "edges") - names.all.begin());
+        const std::string& number = at + 1 < tokens.size() ? tokens[at + 1] : "";
+        if (number.size() == 1 && number[0] >= '0' && number[0] <= '4') {
+            item.span.edge_count = number[0] - '0';
             names.all.clear();
             fields_of_load(names, item);
         }
@@ -298,7 +292,8 @@ Message read_message(const Words& words, const std::vector<std::string>& tokens,
     }
     for (std::size_t i = 0; i < std::size(load_kinds); ++i) {
         const auto load = LoadItem::Kind(i);
-        if (kind != load_kinds[i] || load == LoadItem::Kind::polygon || load == LoadItem::Kind::trapeze)
+        if (kind != load_kinds[i] || load == LoadItem::Kind::polygon || load == LoadItem::Kind::surface ||
+            load == LoadItem::Kind::trapeze)
             continue;
         LoadItem item;
         item.kind = load;

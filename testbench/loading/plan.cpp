@@ -1,5 +1,6 @@
 #include "testbench/loading/plan.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "model/machine/message.hpp"
@@ -44,18 +45,20 @@ void add(Digest& d, const Polygon& p) {
     d.list(p.vertices, int(p.vertices.size()));
 }
 
+void add(Digest& d, const Surface& s) {
+    d << s.polygon << s.object << s.plane << s.drop << s.normal << s.slack << s.last_row;
+}
+
 void add(Digest& d, const Trapeze& t, const CornerIntensities& intensities) {
-    d << t.polygon << t.object << t.plane << t.drop << t.normal;
     d.list(t.corners, t.corner_count).list(t.edges, t.edge_count);
-    d << t.top << t.bottom << t.slack;
+    d << t.rows.first << t.rows.last << t.columns.first << t.columns.last;
     d.list(intensities, int(intensities.size()));
 }
 
 void add(Digest& d, const Span& s) {
     d << s.polygon << s.object << s.x << s.last << s.plane << s.drop << s.normal;
     d.list(s.edges, s.edge_count);
-    d << s.near << s.d_near << s.far << s.d_far << s.z_min << s.z_max << s.slack;
-    d.list(s.outline, s.outline_count);
+    d << s.z << s.dz << s.n << s.dn << s.slack;
     d << s.intensity << s.d_intensity;
 }
 
@@ -79,6 +82,8 @@ class Planner {
         const std::size_t cells = std::size_t(layout.width + 1) * std::size_t(layout.height);
         voxels_begin_.resize(cells);
         spans_end_.resize(cells);
+        cycles_end_.resize(cells);
+        row_cycles_.resize(std::size_t(layout.height));
     }
 
     LoadPlan run() {
@@ -142,16 +147,41 @@ class Planner {
         const int bits = int(polygon.vertices.size()) * bits_.vertex + bits_.polygon;
         put_out(item, bits);
         unit(Layout::precomputation).add(1, 0);
+        const std::vector<Trapeze> trapezes =
+            precompute(polygon, arithmetic_, plan_.layout.width, plan_.layout.height);
+        if (trapezes.empty()) return;
+        share(trapezes[0]);
         item.kind = Kind::trapeze;
-        for (const Trapeze& trapeze : precompute(polygon, arithmetic_)) {
+        for (const Trapeze& trapeze : trapezes) {
             ++plan_.counts.trapezes;
             item.trapeze = trapeze;
             item.intensities = CornerIntensities{};
-            if (picture_.display == Display::gouraud) item.intensities = shade_corners(trapeze, scene_);
+            if (picture_.display == Display::gouraud)
+                item.intensities = shade_corners(trapeze, scene_, arithmetic_);
             plan_.trapezes.push_back(digest_of(item));
             unit(Layout::precomputation).cycles += costs_.precomputation_trapeze;
-            link(Layout::trapezes).add(1, cycles(bits_.trapeze));
+            link(Layout::trapezes).add(1, cycles(bits_of(trapeze)));
             distribute(item, 1 + costs_.geometry_polygon + cycles(bits) + costs_.precomputation_trapeze);
+        }
+    }
+
+    int bits_of(const Trapeze& trapeze) const { return bits_.trapeze + trapeze.edge_count * bits_.edge; }
+    int bits_of(const Span& span) const {
+        return bits_.span + std::min(span.edge_count, bits_.span_edges) * bits_.edge;
+    }
+
+    /// Passes what the trapezes of a polygon share down to the last row that needs it.
+    void share(const Surface& surface) {
+        LoadItem item;
+        item.kind = Kind::surface;
+        static_cast<Surface&>(item.trapeze) = surface;
+        plan_.trapezes.push_back(digest_of(item));
+        link(Layout::trapezes).add(1, cycles(bits_.surface));
+        const Layout& layout = plan_.layout;
+        for (int y = 0; y < layout.height; ++y) {
+            if (y > 0) link(layout.down(y - 1)).add(1, cycles(bits_.surface));
+            unit(layout.distributor(y)).add(1, costs_.distribution_pass);
+            if (surface.last_row <= y) break;
         }
     }
 
@@ -160,13 +190,13 @@ class Planner {
     void distribute(const LoadItem& item, std::uint64_t way) {
         const Layout& layout = plan_.layout;
         const Trapeze& trapeze = item.trapeze;
-        const int first = trapeze.first_row(layout.height);
+        const std::uint64_t on_link = cycles(bits_of(trapeze));
         for (int y = 0; y < layout.height; ++y) {
-            if (y > 0) link(layout.down(y - 1)).add(1, cycles(bits_.trapeze));
-            const bool cuts = y >= first;
+            if (y > 0) link(layout.down(y - 1)).add(1, on_link);
+            const bool cuts = y >= trapeze.rows.first;
             const std::uint64_t work = cuts ? costs_.distribution_span : costs_.distribution_pass;
             unit(layout.distributor(y)).add(1, work);
-            way += cycles(bits_.trapeze) + work;
+            way += on_link + work;
             if (cuts) cut(item, y, way);
             if (cuts && !trapeze.reaches_below(y)) break;
         }
@@ -174,20 +204,22 @@ class Planner {
 
     void cut(const LoadItem& from, int y, std::uint64_t way) {
         const bool gouraud = picture_.display == Display::gouraud;
-        const auto span =
-            cut_span(from.trapeze, y, plan_.layout.width, arithmetic_, gouraud ? &from.intensities : nullptr);
+        const auto span = cut_span(from.trapeze, y, scene_.frame.depth, picture_.hit, arithmetic_,
+                                   gouraud ? &from.intensities : nullptr);
         if (!span) return;
         ++plan_.counts.spans;
         LoadItem item;
         item.kind = Kind::span;
         item.span = *span;
         plan_.rows[std::size_t(y)].push_back(digest_of(item));
-        link(plan_.layout.row(y)).add(1, cycles(bits_.span));
+        const std::uint64_t on_link = cycles(bits_of(*span));
+        link(plan_.layout.row(y)).add(1, on_link);
         const std::size_t row = std::size_t(y) * std::size_t(plan_.layout.width + 1);
         ++voxels_begin_[row + std::size_t(span->x)];
         ++spans_end_[row + std::size_t(span->last) + 1];
-        way += std::uint64_t(span->last + 1) * cycles(bits_.span) +
-               std::uint64_t(span->x) * costs_.load_forward +
+        cycles_end_[row + std::size_t(span->last) + 1] += on_link;
+        row_cycles_[std::size_t(y)] += on_link;
+        way += std::uint64_t(span->last + 1) * on_link + std::uint64_t(span->x) * costs_.load_forward +
                std::uint64_t(span->last - span->x + 1) * costs_.load_voxel;
         if (way > plan_.longest_way.cycles) {
             plan_.longest_way = {"the way of a span of polygon " + std::to_string(span->polygon) +
@@ -203,10 +235,13 @@ class Planner {
             const std::size_t row = std::size_t(y) * std::size_t(layout.width + 1);
             std::uint64_t reach = plan_.rows[std::size_t(y)].size() - broadcasts_;
             std::uint64_t making = 0;
+            std::uint64_t on_links = row_cycles_[std::size_t(y)];
             for (int x = 0; x < layout.width; ++x) {
                 const std::size_t at = row + std::size_t(x);
                 if (x > 0) {
-                    link(layout.east(x - 1, y)).add(reach - spans_end_[at], cycles(bits_.span));
+                    on_links -= cycles_end_[at];
+                    link(layout.east(x - 1, y)).messages += reach - spans_end_[at];
+                    link(layout.east(x - 1, y)).cycles += on_links;
                     link(layout.east(x - 1, y)).messages += broadcasts_;
                     link(layout.east(x - 1, y)).cycles += broadcast_cycles_;
                 }
@@ -228,6 +263,8 @@ class Planner {
     LoadPlan plan_;
     std::vector<std::uint64_t> voxels_begin_;  ///< number of spans that begin in each cell
     std::vector<std::uint64_t> spans_end_;     ///< number of spans that end just before each cell
+    std::vector<std::uint64_t> cycles_end_;    ///< their cycles on a link
+    std::vector<std::uint64_t> row_cycles_;    ///< of all spans of a row on its first link
     std::uint64_t work_ = 1;                   ///< cycles of geometry for its next message
     std::uint64_t broadcasts_ = 0;
     std::uint64_t broadcast_cycles_ = 0;
@@ -244,6 +281,9 @@ std::uint64_t digest_of(const LoadItem& item) {
             break;
         case Kind::polygon:
             add(d, item.polygon);
+            break;
+        case Kind::surface:
+            add(d, static_cast<const Surface&>(item.trapeze));
             break;
         case Kind::trapeze:
             add(d, item.trapeze, item.intensities);

@@ -199,7 +199,8 @@ Json report(const Loading& l) {
                         {"hops", r.counters.load_hops}};
     json["message_bits"] = {{"polygon", bits.polygon},          {"vertex", bits.vertex},
                             {"features", bits.features},        {"setup", bits.setup(l.scene.sources.size())},
-                            {"trapeze", bits.trapeze},          {"span", bits.span},
+                            {"surface", bits.surface},          {"trapeze", bits.longest_trapeze()},
+                            {"span", bits.longest_span()},      {"edge", bits.edge},
                             {"end_of_scene", bits.end_of_scene}};
     for (std::size_t i = 0; i < unit_groups.size(); ++i)
         json["stages"][unit_groups[i]] = stage(l, UnitGroup(i));

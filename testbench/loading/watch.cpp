@@ -15,6 +15,8 @@ std::string words_of(const LoadItem& item) {
             return "features of object " + std::to_string(item.object);
         case Kind::polygon:
             return "polygon " + std::to_string(item.polygon.id);
+        case Kind::surface:
+            return "surface of polygon " + std::to_string(item.trapeze.polygon);
         case Kind::trapeze:
             return "trapeze of polygon " + std::to_string(item.trapeze.polygon);
         case Kind::span:
@@ -52,7 +54,7 @@ std::uint32_t LoadWatch::work_at(std::size_t unit, const LoadItem& item) const {
     const Layout::Place place = layout_.unit_place(unit);
     switch (layout_.unit_group(unit)) {
         case UnitGroup::distributors: {
-            const bool cuts = item.kind == Kind::trapeze && place.y >= item.trapeze.first_row(layout_.height);
+            const bool cuts = item.kind == Kind::trapeze && place.y >= item.trapeze.rows.first;
             return cuts ? costs_.distribution_span : costs_.distribution_pass;
         }
         case UnitGroup::cells: {
@@ -303,6 +305,7 @@ void LoadWatch::latch(std::size_t index, const LoadItem& item, Cycle now) {
             unit.finished = true;
             break;
         case Kind::polygon:
+        case Kind::surface:
         case Kind::trapeze:
             order_.add(in(index, now) + words_of(item) + " does not belong into a row");
             break;

@@ -115,7 +115,6 @@ void cut_increments(Span& span, const Formats& formats) {
     const int integer_bits = formats.loading.integer_bits();
     const Format word(integer_bits, formats.word_bits - integer_bits);
     span.plane.n.x = word.hold(span.plane.n.x);
-    span.d_near = word.hold(span.d_near);
     for (int axis = 0; axis < 3; ++axis) span.normal.du[axis] = word.hold(span.normal.du[axis]);
 }
 
@@ -133,8 +132,8 @@ std::optional<Span> span_from(const Polygon& polygon, int from, const Arithmetic
     Polygon part = polygon;
     part.vertices = clip_to_box(part.vertices, {{double(from), 0, 0}, {row_cells, 1, 1024}});
     if (part.vertices.empty()) return std::nullopt;
-    for (const Trapeze& trapeze : precompute(part, arithmetic)) {
-        if (auto span = cut_span(trapeze, 0, row_cells, arithmetic)) return span;
+    for (const Trapeze& trapeze : precompute(part, arithmetic, row_cells)) {
+        if (auto span = cut_span(trapeze, 0, 1024, HitTest::edge, arithmetic)) return span;
     }
     return std::nullopt;
 }

@@ -169,25 +169,35 @@ TEST(Messages, HaveTheBitsOfTheirFields) {
     EXPECT_EQ(bits.shadow_ray, bits.ray - 6) << "without its generation";
     EXPECT_EQ(bits.verdict, 3 + address);
     EXPECT_EQ(bits.intensity, 3 + 3 * 20 + address);
-    EXPECT_EQ(bits.span, 3 + 20 + 2 * 7 + 5 * word + plane + normals + edges);
-    EXPECT_EQ(bits.trapeze, 3 + 20 + 4 * 3 * word + plane + normals + edges);
-    EXPECT_EQ(bits.polygon, 3 + 20 + plane + normals);
+    EXPECT_EQ(bits.longest_span(), 3 + 20 + 2 * 7 + plane + normals + edges);
+    EXPECT_EQ(bits.longest_trapeze(), 3 + 2 * 6 + 2 * 7 + edges);
+    EXPECT_EQ(bits.surface, 3 + 20 + 6 + plane + normals);
+    EXPECT_EQ(bits.polygon, 3 + 20 + plane + normals + 16) << "and how many vertices follow";
     EXPECT_EQ(bits.vertex, 3 * word);
     EXPECT_EQ(bits.features, 3 + 6 * 12 + 12 + 16 + 1);
-    EXPECT_EQ(bits.viewer, 3 + 3 * 32 + 6 + 6);
+    const int levels = 16 + 16 + 6;  // how many, and how high
+    EXPECT_EQ(bits.viewer, 3 + 3 * 32 + 6 + 1 + 6 + 3 * 20 + levels + 7);
     EXPECT_EQ(bits.setup(2) - bits.setup(0), 2 * (3 * 32 + 6 + 3 * 20));
     // Each grows with the word length. A ray holds three words of place, three of direction, two of
     // reciprocals and one of weight.
     const MessageBits wider = message_bits(picture, machine, Formats(24, Rounding::nearest, extent));
     EXPECT_EQ(wider.ray - bits.ray, 9 * 4);
     EXPECT_EQ(wider.verdict, bits.verdict);
-    EXPECT_EQ(wider.span - bits.span, (5 + 4 + 9 + 12) * 4);
+    EXPECT_EQ(wider.longest_span() - bits.longest_span(), (4 + 9 + 12) * 4);
+    // Rung `depth` needs neither plane nor edges in a span; with one normal a voxel it is the paper's span.
+    picture.hit = HitTest::depth;
+    EXPECT_EQ(message_bits(picture, machine, formats).longest_span(),
+              3 + 20 + 2 * 7 + 2 * word + 2 + normals);
+    picture.normals = Normals::voxel;
+    EXPECT_EQ(message_bits(picture, machine, formats).longest_span(), 3 + 20 + 2 * 7 + 8 * word);
+    picture.hit = HitTest::edge;
+    picture.normals = Normals::linear;
     // Verdicts on voxels name one of 1024 voxels instead of a slot.
     picture.shadows = Shadows::memo;
     EXPECT_EQ(message_bits(picture, machine, formats).verdict, bits.verdict + 10 - 4);
     // Gouraud: a span also carries an intensity and its increment, three words each.
     picture.display = Display::gouraud;
-    EXPECT_EQ(message_bits(picture, machine, formats).span, bits.span + 6 * word);
+    EXPECT_EQ(message_bits(picture, machine, formats).longest_span(), bits.longest_span() + 6 * word);
 }
 
 TEST(Messages, AnAnswerGoesWhereItsRayCameFrom) {

@@ -15,6 +15,12 @@ bool inside(const Trapeze& t, const dvec2& uv) {
     return true;
 }
 
+/// A place outside the array counts as its border.
+void expect_within(double place, const Stretch& cells) {
+    EXPECT_GE(std::clamp(place, 0.0, double(most_cells)), cells.first - 1e-6);
+    EXPECT_LE(std::clamp(place, 0.0, double(most_cells)), cells.last + 1 + 1e-6);
+}
+
 /// Every point of the polygon's plane lies in a trapeze exactly if it lies in the polygon, and the areas add
 /// up.
 void expect_tiled(const Polygon& polygon, Random& random) {
@@ -29,13 +35,15 @@ void expect_tiled(const Polygon& polygon, Random& random) {
         EXPECT_EQ(t.polygon, polygon.id);
         EXPECT_EQ(t.object, polygon.object);
         EXPECT_EQ(t.drop, polygon.drop);
-        EXPECT_LE(t.top, t.bottom);
+        EXPECT_LE(t.rows.first, t.rows.last);
+        EXPECT_LE(t.rows.last, t.last_row);
+        EXPECT_LE(t.columns.first, t.columns.last);
         std::vector<dvec3> corners(t.corners.begin(), t.corners.begin() + t.corner_count);
         area += shapes::area_of(corners);
         for (const dvec3& p : corners) {
             EXPECT_NEAR(glm::dot(t.plane.n, p), t.plane.c, 1e-9);
-            EXPECT_GE(p.y, t.top);
-            EXPECT_LE(p.y, t.bottom);
+            expect_within(p.y, t.rows);
+            expect_within(p.x, t.columns);
             // Every corner lies on or inside every edge.
             for (int i = 0; i < t.edge_count; ++i)
                 EXPECT_GT(t.edges[std::size_t(i)].at(project(p, t.drop)), -1e-8);

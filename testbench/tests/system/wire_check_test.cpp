@@ -16,6 +16,7 @@ void expect_same_when_packed(const fs::path& scene, const Words& words) {
     EXPECT_EQ(packed.at("cycles"), plain.at("cycles"));
     EXPECT_EQ(packed.at("hops"), plain.at("hops"));
     EXPECT_FALSE(plain.at("messages").contains("packed"));
+    EXPECT_GE(packed.at("messages").at("packed_load"), plain.at("hops").at("load"));
     // Every hop of a ray or an answer, the exterior's included, is one message packed.
     EXPECT_EQ(packed.at("messages").at("packed"), plain.at("hops").at("ray").get<std::int64_t>() +
                                                       plain.at("hops").at("return").get<std::int64_t>());
