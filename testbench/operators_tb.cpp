@@ -1,16 +1,18 @@
 // operators_tb: measures the cell's operators over the whole range of their arguments and prints the table of
-// their errors, storage and cycles as Markdown.
+// their errors, storage and cycles as Markdown; or writes the operators' own tables for hardware.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <fstream>
 #include <iostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "model/numbers/operators.hpp"
+#include "model/numbers/table_words.hpp"
 #include "model/settings/costs.hpp"
 #include "testbench/common/version.hpp"
 
@@ -171,8 +173,43 @@ void print_table(int word_bits) {
     print_operator(power, word_bits);
 }
 
+/// Writes one table for $readmemh. Lines run from a word to the next, so there is one word more than lines.
+template <class Word>
+void write_table(const std::string& folder, const std::string& name, const std::string& curve, int lines,
+                 int word_bits, Word word) {
+    const std::string path = folder + "/" + name + ".hex";
+    std::ofstream file(path);
+    file << "// " << curve << ": " << lines << " lines, word i to word i + 1; words of " << word_bits
+         << " bits, " << word_bits - 1 << " of them fraction bits\n";
+    for (int i = 0; i <= lines; ++i) {
+        char text[20];
+        std::snprintf(text, sizeof text, "%05llx\n", static_cast<unsigned long long>(word(std::uint64_t(i))));
+        file << text;
+    }
+    if (!file.flush()) throw std::runtime_error(path + ": it can't be written");
+}
+
+void write_tables(const std::string& folder, int word_bits) {
+    const TableSizes sizes = table_sizes({}, word_bits);
+    const int f = word_bits - 1;
+    const auto octave = std::uint64_t(sizes.root / 2);
+    const auto power = std::uint64_t(sizes.power);
+    write_table(
+        folder, "reciprocal", "1/m, m from 1 to 2", sizes.reciprocal, word_bits,
+        [&](std::uint64_t i) { return table_word::reciprocal(i, std::uint64_t(sizes.reciprocal), f); });
+    write_table(folder, "root", "1/sqrt(m), half of the lines from m = 1 to 2, half from 2 to 4", sizes.root,
+                word_bits, [&](std::uint64_t i) {
+                    return i < octave ? table_word::root(0, i, octave, f)
+                                      : table_word::root(1, i - octave, octave, f);
+                });
+    write_table(folder, "log2", "log2(m), m from 1 to 2", sizes.power, word_bits,
+                [&](std::uint64_t i) { return table_word::logarithm(i, power, f); });
+    write_table(folder, "exp2", "2^x, x from 0 to 1; the last word, 2, takes one bit more", sizes.power,
+                word_bits, [&](std::uint64_t i) { return table_word::exponential(i, power, f); });
+}
+
 const char* const help =
-    "Usage: operators_tb [--word-bits N]\n"
+    "Usage: operators_tb [--word-bits N] [--tables DIR]\n"
     "Prints the cell's operators as a Markdown table: errors, storage and cycles of their methods.\n"
     "Arguments are all words from 1 to 2 (1/x), 1 to 4 (1/sqrt(x)) and 0 to 1 (b^n), of long words about a\n"
     "million, evenly spread. n is 1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1000 and 1024, and 100000 on lines "
@@ -182,6 +219,9 @@ const char* const help =
     "b^n has two tables of that many entries, 1/sqrt(x) half of them over 1 to 2 and half over 2 to 4.\n"
     "schlick divides by 1/x (newton, 64 entries): its cycles are in, its table is not.\n"
     "  --word-bits N  length of a word, 8 to 32 (default 20)\n"
+    "  --tables DIR   write the operators' tables into a folder instead, for $readmemh: reciprocal.hex, "
+    "root.hex,\n"
+    "                 log2.hex, exp2.hex\n"
     "  --version      what the program was built from\n"
     "  --help         this text\n";
 
@@ -197,6 +237,7 @@ int word_bits_in(const std::string& text) {
 
 void run(const std::vector<std::string>& arguments) {
     int word_bits = 20;
+    std::string folder;
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         if (arguments[i] == "--help") {
             std::printf("%s", help);
@@ -206,14 +247,25 @@ void run(const std::vector<std::string>& arguments) {
             std::printf("operators_tb %s\n", version_text().c_str());
             return;
         }
-        if (arguments[i] != "--word-bits") {
+        const bool tables = arguments[i] == "--tables";
+        if (arguments[i] != "--word-bits" && !tables) {
             throw UsageError("unknown argument '" + arguments[i] +
-                             "'; expected --word-bits N, --help or --version");
+                             "'; expected --word-bits N, --tables DIR, --help or --version");
         }
-        if (i + 1 == arguments.size()) throw UsageError("--word-bits: expected 8 to 32");
-        word_bits = word_bits_in(arguments[++i]);
+        if (i + 1 == arguments.size())
+            throw UsageError(arguments[i] + (tables ? ": expected a folder" : ": expected 8 to 32"));
+        ++i;
+        if (tables) {
+            folder = arguments[i];
+        } else {
+            word_bits = word_bits_in(arguments[i]);
+        }
     }
-    print_table(word_bits);
+    if (folder.empty()) {
+        print_table(word_bits);
+    } else {
+        write_tables(folder, word_bits);
+    }
 }
 
 /// Throws std::runtime_error if standard output can't be written.

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "model/numbers/table_words.hpp"
+
 namespace raycell {
 
 namespace {
@@ -69,6 +71,28 @@ void check_table(const char* name, int size) {
 
 }  // namespace
 
+namespace table_word {
+
+Word reciprocal(Word i, Word n, int fraction_bits) {
+    const Word one = Word(1) << fraction_bits;
+    return exact_reciprocal(one + i * (one / n), fraction_bits, true);
+}
+
+Word root(int octave, Word i, Word n, int fraction_bits) {
+    const Word first = Word(1) << (fraction_bits - 1 + octave);
+    return exact_root(first + i * (first / n), fraction_bits, true);
+}
+
+Word logarithm(Word i, Word n, int fraction_bits) {
+    return Word(std::llround(std::log2(1 + double(i) / double(n)) * scale_by(1, fraction_bits)));
+}
+
+Word exponential(Word i, Word n, int fraction_bits) {
+    return Word(std::llround(std::exp2(double(i) / double(n)) * scale_by(1, fraction_bits)));
+}
+
+}  // namespace table_word
+
 /// `curve` gives the word at line i of n, for i from 0 to n.
 template <class Curve>
 Operators::Table Operators::tabulate(int size, int argument_bits, Curve curve) {
@@ -109,21 +133,15 @@ Operators::Operators(const OperatorSettings& settings, int word_bits, Rounding r
     check_table("root table", sizes.root);
     check_table("power table", sizes.power);
     const int f = fraction_bits_;
-    const Word one = Word(1) << f;
-    reciprocals_ = tabulate(sizes.reciprocal, f,
-                            [&](Word i, Word n) { return exact_reciprocal(one + i * (one / n), f, true); });
+    reciprocals_ =
+        tabulate(sizes.reciprocal, f, [&](Word i, Word n) { return table_word::reciprocal(i, n, f); });
     for (const int octave : {0, 1}) {
-        const Word first = octave == 0 ? one / 2 : one;
-        roots_[octave] = tabulate(sizes.root / 2, f - 1 + octave, [&](Word i, Word n) {
-            return exact_root(first + i * (first / n), f, true);
-        });
+        roots_[octave] = tabulate(sizes.root / 2, f - 1 + octave,
+                                  [&](Word i, Word n) { return table_word::root(octave, i, n, f); });
     }
-    logarithms_ = tabulate(sizes.power, f, [&](Word i, Word n) {
-        return Word(std::llround(std::log2(1 + double(i) / double(n)) * double(one)));
-    });
-    exponentials_ = tabulate(sizes.power, f, [&](Word i, Word n) {
-        return Word(std::llround(std::exp2(double(i) / double(n)) * double(one)));
-    });
+    logarithms_ = tabulate(sizes.power, f, [&](Word i, Word n) { return table_word::logarithm(i, n, f); });
+    exponentials_ =
+        tabulate(sizes.power, f, [&](Word i, Word n) { return table_word::exponential(i, n, f); });
 }
 
 /// The value returned for a result beyond 2^top_exponent, with the sign of x.
