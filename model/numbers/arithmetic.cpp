@@ -91,6 +91,13 @@ Formats::Formats(int word, Rounding rounding, const ArrayExtent& extent) : word_
     ior = Format(3, std::min(word, 16) + more - 2);
     shine_bits = 12 + more;
     loading = Format(scene_bits, word + 16 - scene_bits);
+    from = Format(4, word + 11, rounding);
+    array_exponent = scene_bits - 3;
+}
+
+int Formats::place_exponent(const dvec3& place) const {
+    const double largest = std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
+    return largest > 0 ? std::max(exponent_of(largest) + 1, array_exponent) : array_exponent;
 }
 
 Arithmetic::Arithmetic(const NumberSettings& settings, const ArrayExtent& extent) : Arithmetic() {
@@ -147,7 +154,7 @@ dvec3 Arithmetic::normalise(const dvec3& v, double& length) const {
                   mantissa_.hold(scale_by(v.z, -exponent)));
     const double squared = dot(formats_.field, m, m);
     const double inverse = operators_->inverse_root(squared);
-    length = scale_by(squared * inverse, exponent);
+    length = product(formats_.reach, squared, scale_by(inverse, exponent));
     return {product(formats_.unit, m.x, inverse), product(formats_.unit, m.y, inverse),
             product(formats_.unit, m.z, inverse)};
 }
@@ -160,13 +167,21 @@ double Arithmetic::hold_reach(double distance) const {
 
 dvec3 Arithmetic::hold_place(const dvec3& place) const {
     if (exact_) return place;
-    const double largest = std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
-    if (!(largest > 0)) return dvec3(0);
-    const int exponent = exponent_of(largest) + 1;
+    const int exponent = formats_.place_exponent(place);
     const Format mantissa(1, formats_.word_bits + 11);
     return {scale_by(mantissa.hold(scale_by(place.x, -exponent)), exponent),
             scale_by(mantissa.hold(scale_by(place.y, -exponent)), exponent),
             scale_by(mantissa.hold(scale_by(place.z, -exponent)), exponent)};
+}
+
+dvec3 Arithmetic::way(const dvec3& point, const dvec3& place) const {
+    if (exact_) return place - point;
+    const int exponent = formats_.place_exponent(place);
+    dvec3 way;
+    for (int axis = 0; axis < 3; ++axis) {
+        way[axis] = place[axis] - scale_by(formats_.from.hold(scale_by(point[axis], -exponent)), exponent);
+    }
+    return way;
 }
 
 double Arithmetic::hold_shine(double shine) const {

@@ -44,6 +44,7 @@ struct Formats {
     Format feature;      ///< unsigned Q2, 12 bits, longer in words of over 20: colours, Kd, Ks, T
     Format ior;          ///< unsigned Q2, 16 bits, longer in words of over 20: index of refraction
     Format loading;      ///< word_bits + 16: polygons, trapezes, spans; guard bits for their increments
+    Format from;         ///< Q4.(word_bits + 11): a point as a share of a place's power of two (way())
 
     /// Throws std::invalid_argument for a word length outside 8 to 32.
     Formats(int word_bits, Rounding rounding, const ArrayExtent& extent);
@@ -53,6 +54,10 @@ struct Formats {
     int ior_bits() const { return ior.bits() - 1; }
     int depth_word_bits() const { return depth_bits + word_bits; }  ///< of a depth in a message or a voxel
     int place_bits() const { return 3 * (word_bits + 12) + exponent_bits; }
+    /// The exponent of a place's three mantissas: all of them, and all coordinates of the array, are below
+    /// 2^it.
+    int place_exponent(const dvec3& place) const;
+    int array_exponent = 0;  ///< of the array's coordinates
     static constexpr int exponent_bits = 6;
     static constexpr int shine_exponent_bits = 5;  ///< from 2^-8; 0 is none
     int shine_bits = 12;  ///< a float: 5 exponent bits and 7 fraction bits, more in words of over 20
@@ -114,8 +119,11 @@ class Arithmetic {
     }
     /// v/|v|; v is not 0. Fixed: shifted until its largest component fills a word, then 1/sqrt.
     dvec3 normalise(const dvec3& v) const;
-    /// The same; also gives |v|, rounded only by the operator.
+    /// The same; also gives |v|, a word of `reach`.
     dvec3 normalise(const dvec3& v, double& length) const;
+    /// place - point. Fixed: the point is rounded to the last bit of the place's mantissas first, then the
+    /// difference is exact. It changes nothing of a place nearer than 8192 cells.
+    dvec3 way(const dvec3& point, const dvec3& place) const;
 
     /// Tolerance of hit tests, in cells: a point this far outside an edge, or behind the end of a cell,
     /// counts as inside, so that neighbours leave no crack.
@@ -134,7 +142,7 @@ class Arithmetic {
     /// is that long.
     double hold_reach(double distance) const;
     /// Rounds a place that may lie far outside the array (source, viewer): word_bits + 12 bits per
-    /// coordinate, one exponent for all three.
+    /// coordinate, one exponent for all three, at least the array's (Formats::place_exponent).
     dvec3 hold_place(const dvec3& place) const;
 
     /// Rounds Phong's power to the float that the features carry.

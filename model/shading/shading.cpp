@@ -21,7 +21,7 @@ ShadePoint shade_point(const dvec3& position, const dvec3& direction, const dvec
 }
 
 SourceView view_source(const ShadePoint& point, const Source& source, const Arithmetic& arithmetic) {
-    const dvec3 way = source.position - point.position;
+    const dvec3 way = arithmetic.way(point.position, source.position);
     SourceView view;
     if (way == dvec3(0)) return view;  // the source lies on the surface: it lights nothing there
     view.direction = arithmetic.normalise(way, view.distance);

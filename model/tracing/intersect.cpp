@@ -51,7 +51,7 @@ bool inside_mask(const Voxel& voxel, const dvec3& point, double room, const Arit
     if (voxel.drop != 2) {
         const double per_run = arithmetic.reciprocal(voxel.far - voxel.near);
         scaled.z = arithmetic.product(word, point.z - voxel.near, per_run);
-        rooms.z = room * per_run;
+        rooms.z = arithmetic.product(word, room, per_run);
     }
     const dvec2 uv = project(scaled, voxel.drop) * double(window_steps);
     const dvec2 room_uv = project(rooms, voxel.drop) * double(window_steps);
@@ -63,7 +63,8 @@ bool inside_mask(const Voxel& voxel, const dvec3& point, double room, const Arit
         const double per_window = arithmetic.reciprocal(size[axis]);
         const double place = arithmetic.product(word, uv[axis] - low[axis], per_window);
         // Tolerance, so that neighbouring masks leave no crack.
-        const double rounding = arithmetic.exact() ? 1e-6 : room_uv[axis] * per_window;
+        const double rounding =
+            arithmetic.exact() ? 1e-6 : arithmetic.product(word, room_uv[axis], per_window);
         if (place < -rounding || place > 1 + rounding) return false;
         bit[axis] = std::clamp(int(place * 8), 0, 7);
     }
@@ -97,18 +98,14 @@ std::optional<Meeting> meet_plane(const Voxel& voxel, const Ray& ray, const Arit
 }  // namespace
 
 std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, const Ray& ray, double t_end,
-                                HitTest test, double level, const Arithmetic& arithmetic) {
+                                HitTest test, const Arithmetic& arithmetic) {
     if (test == HitTest::depth) {
-        // Compares levels, not depths: a run that the ray only touches at its border is another level.
-        const auto t = enter_run(ray, t_end, voxel.near, voxel.far, arithmetic);
-        if (!t) return t;
-        const double z1 = depth_at(ray, t_end, arithmetic);
-        const double low = std::floor(std::min(ray.position.z, z1) / level);
-        const double high = std::floor(std::max(ray.position.z, z1) / level);
-        if (voxel.near_level < low || voxel.near_level > high) return std::nullopt;
-        return t;
+        // Compares levels, not depths: a run that the ray only touches at its end is another level.
+        const double nearest = std::min(ray.position.z, depth_at(ray, t_end, arithmetic));
+        if (nearest >= voxel.far) return std::nullopt;
     }
-    if (test == HitTest::interval) return enter_run(ray, t_end, voxel.near, voxel.far, arithmetic);
+    if (test == HitTest::depth || test == HitTest::interval)
+        return enter_run(ray, t_end, voxel.near, voxel.far, arithmetic);
 
     const auto meeting = meet_plane(voxel, ray, arithmetic);
     if (!meeting) return std::nullopt;
@@ -142,7 +139,7 @@ bool precedes(double t, std::uint32_t polygon, double kept_t, std::uint32_t kept
 }  // namespace
 
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
-                                       double level, const Arithmetic& arithmetic, Comparisons* comparisons,
+                                       const Arithmetic& arithmetic, Comparisons* comparisons,
                                        const DepthRuns& runs) {
     std::optional<CellHit> best;
     const std::uint32_t run_count = runs.first ? runs.count : std::uint32_t(store.voxels.size());
@@ -160,7 +157,7 @@ std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, d
             ++comparisons->tests;
             comparisons->edges += voxel.edge_count;
         }
-        const auto t = hit_voxel(store, voxel, ray, t_end, test, level, arithmetic);
+        const auto t = hit_voxel(store, voxel, ray, t_end, test, arithmetic);
         if (!t) continue;
         const bool tied = best && std::abs(*t - best->t) <= arithmetic.tie();
         if (!best ||

@@ -12,7 +12,7 @@ namespace raycell {
 /// that leaves a polygon may not hit behind its origin. Other rays may, within the tolerance, so that no hit
 /// falls between two cells.
 std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, const Ray& ray, double t_end,
-                                HitTest test, double level, const Arithmetic& arithmetic);
+                                HitTest test, const Arithmetic& arithmetic);
 
 struct CellHit {
     double t = 0;
@@ -31,7 +31,7 @@ struct Comparisons {
 /// for a shadow ray, but the cell has one comparison unit for all rays. The store is read only where the
 /// ray's own run meets one of `runs`.
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
-                                       double level, const Arithmetic& arithmetic,
-                                       Comparisons* comparisons = nullptr, const DepthRuns& runs = {});
+                                       const Arithmetic& arithmetic, Comparisons* comparisons = nullptr,
+                                       const DepthRuns& runs = {});
 
 }  // namespace raycell

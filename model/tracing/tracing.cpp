@@ -138,8 +138,8 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
         t_end = ray.reach;
         visit.event = Visit::Event::reaches_source;
     }
-    const auto hit = nearest_in_cell(store, ray, t_end, context.settings.hit, context.scene.frame.level(),
-                                     arithmetic, &visit.comparisons, runs);
+    const auto hit =
+        nearest_in_cell(store, ray, t_end, context.settings.hit, arithmetic, &visit.comparisons, runs);
     // A surface at the source itself does not hide it.
     if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach - arithmetic.hair())) {
         visit.event = Visit::Event::hit;
@@ -281,9 +281,10 @@ Ray primary_ray(const Context& context, int x, int y) {
     }
     ray.position = {0.5, 0.5, 0};
     const Arithmetic& arithmetic = context.arithmetic;
-    const dvec3 direction = arithmetic.exact() || frame.viewer_at_infinity
-                                ? frame.primary_ray(x + 0.5, y + 0.5).direction
-                                : arithmetic.normalise(dvec3(x + 0.5, y + 0.5, 0) - context.eye);
+    const dvec3 direction =
+        arithmetic.exact() || frame.viewer_at_infinity
+            ? frame.primary_ray(x + 0.5, y + 0.5).direction
+            : arithmetic.normalise(-arithmetic.way(dvec3(x + 0.5, y + 0.5, 0), context.eye));
     set_direction(ray, direction, arithmetic);
     return ray;
 }
@@ -324,7 +325,7 @@ Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32
     ray.slot = voxel;
     const Arithmetic& arithmetic = context.arithmetic;
     const dvec3 local = store.voxels[voxel].point;
-    const dvec3 way = context.sources[source].position - (local + dvec3(x, y, 0));
+    const dvec3 way = arithmetic.way(local + dvec3(x, y, 0), context.sources[source].position);
     dvec3 direction{0, 0, 1};
     double distance = 0;
     if (way != dvec3(0)) direction = arithmetic.normalise(way, distance);
@@ -370,9 +371,7 @@ Pixel display_cell(const Context& context, const CellStore& store, int x, int y)
     ray.position = {0.5, 0.5, 0};
     ray.fresh = false;
     set_direction(ray, {0, 0, 1}, context.arithmetic);
-    const Frame& frame = context.scene.frame;
-    const auto hit =
-        nearest_in_cell(store, ray, context.depth, context.settings.hit, frame.level(), context.arithmetic);
+    const auto hit = nearest_in_cell(store, ray, context.depth, context.settings.hit, context.arithmetic);
     if (!hit) {
         record_background(pixel);
         pixel.colour = context.background;

@@ -223,7 +223,8 @@ TEST(Arithmetic, PlacesKeepTheirShapeHoweverFarAway) {
         const double size = std::ldexp(1.0, random.whole(-20, 40));
         const dvec3 place = size * dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         const dvec3 held = arithmetic.hold_place(place);
-        const double largest = std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)});
+        const double largest =
+            std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z), usual.depth});
         for (int axis = 0; axis < 3; ++axis) {
             EXPECT_LE(std::abs(held[axis] - place[axis]), std::ldexp(largest, -bits - 11)) << bits << " bits";
         }

@@ -244,10 +244,8 @@ TEST(HeldVoxels, KeepTheirEdgesWhereMergedPiecesBeginNearer) {
                     const dvec3 start = local - 0.005 * n;
                     ray.position = {f.unit.hold(start.x), f.unit.hold(start.y), f.depth.hold(start.z)};
                     set_direction(ray, arithmetic.normalise(n), arithmetic);
-                    EXPECT_EQ(
-                        hit_voxel(cells[i], voxel, ray, 0.01, HitTest::edge, scene.frame.level(), arithmetic)
-                            .has_value(),
-                        place.inside)
+                    EXPECT_EQ(hit_voxel(cells[i], voxel, ray, 0.01, HitTest::edge, arithmetic).has_value(),
+                              place.inside)
                         << "cell " << i << ", (" << p.x << ", " << p.y << ", " << p.z << "), "
                         << place.distance << " from the outline";
                 }

@@ -73,7 +73,7 @@ TEST(Voxels, EveryPointOfAPolygonIsHitInItsCellAtEveryRungButDepth) {
                     Ray ray;
                     ray.position = local - reach * voxel.plane.n;
                     ray.direction = voxel.plane.n;
-                    const bool hit = hit_voxel(store, voxel, ray, 2 * reach, rung, level, exact).has_value();
+                    const bool hit = hit_voxel(store, voxel, ray, 2 * reach, rung, exact).has_value();
                     held = held || (in_run && hit);
                 }
                 ASSERT_TRUE(held) << "rung " << int(rung) << ", point (" << p.x << ", " << p.y << ", " << p.z
