@@ -43,8 +43,7 @@ void Assembler::same_fraction(RegisterIndex a, RegisterIndex b) const {
                                " have other last bits");
 }
 
-void Assembler::sum(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products,
-                    RegisterIndex by) {
+int Assembler::accumulate(RegisterIndex c, const std::vector<Factor>& products) {
     const auto& r = program_.registers;
     int fraction = c == none ? r[products[0].a].fraction + r[products[0].b].fraction : r[c].fraction;
     for (const Factor& f : products) fraction = std::max(fraction, r[f.a].fraction + r[f.b].fraction);
@@ -70,9 +69,15 @@ void Assembler::sum(RegisterIndex target, RegisterIndex c, const std::vector<Fac
         const std::size_t stop = std::min(all.size(), i + std::size_t(path.multipliers));
         emit(Op::multiply).products = {all.begin() + std::ptrdiff_t(i), all.begin() + std::ptrdiff_t(stop)};
     }
+    return fraction;
+}
+
+void Assembler::sum(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products,
+                    RegisterIndex by) {
+    const int fraction = accumulate(c, products);
     MicroInstruction& out = emit(Op::round);
     out.target = target;
-    out.shift = fraction - r[target].fraction;
+    out.shift = fraction - program_.registers[target].fraction;
     out.shifts_by = by != none;
     if (out.shifts_by) out.b = by;
 }
@@ -189,6 +194,45 @@ void Assembler::low(RegisterIndex target, RegisterIndex a, int bits) {
     i.shift = bits;
 }
 
+void Assembler::high(RegisterIndex target, RegisterIndex a, int shift) {
+    low(target, a, shift);
+    program_.instructions.back().op = Op::high;
+}
+
+void Assembler::bit(RegisterIndex target, RegisterIndex a, RegisterIndex number) {
+    MicroInstruction& i = emit(Op::bit);
+    i.target = target;
+    i.a = a;
+    i.b = number;
+}
+
+void Assembler::join(RegisterIndex target, RegisterIndex a, int shift, RegisterIndex b) {
+    MicroInstruction& load = emit(Op::load);
+    load.a = a;
+    load.shift = shift;
+    MicroInstruction& add = emit(Op::take_off);
+    add.a = b;
+    add.value = 1;
+    emit(Op::round).target = target;
+}
+
+void Assembler::keep(RegisterIndex target) { emit(Op::round).target = target; }
+
+void Assembler::scale_sum(RegisterIndex target, RegisterIndex whole, RegisterIndex part, RegisterIndex by) {
+    const auto& r = program_.registers;
+    join(target, whole, r[part].fraction - r[whole].fraction, part);
+    MicroInstruction& out = program_.instructions.back();
+    out.shift = r[part].fraction - r[target].fraction;
+    out.shifts_by = true;
+    out.b = by;
+}
+
+void Assembler::jump_product_negative(RegisterIndex c, RegisterIndex a, RegisterIndex b,
+                                      const std::string& to) {
+    accumulate(c, {{a, b}});
+    jump_to(Op::jump_minus, 0, 0, to);
+}
+
 void Assembler::table(RegisterIndex start, RegisterIndex rise, const MicroTable& lines, RegisterIndex a,
                       int shift) {
     auto known = std::find_if(program_.tables.begin(), program_.tables.end(),
@@ -239,7 +283,7 @@ void Assembler::jump_sum_negative(const std::vector<Term>& terms, const std::str
         MicroInstruction& part = emit(i == 0 ? Op::load : Op::take_off);
         part.a = order[i].a;
         part.value = order[i].negative ? -1 : 1;
-        part.shift = fraction - r[order[i].a].fraction;
+        part.shift = fraction - r[order[i].a].fraction + order[i].shift;
     }
     jump_to(Op::jump_minus, 0, 0, to);
 }

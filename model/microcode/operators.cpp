@@ -12,11 +12,6 @@ MicroTable table_of(const std::string& name, const Operators::Table& table) {
     return lines;
 }
 
-void expect_program(Iteration method) {
-    if (method == Iteration::rounded)
-        throw std::invalid_argument("an operator digit by digit has no microprogram");
-}
-
 }  // namespace
 
 OperatorWriter::OperatorWriter(Assembler& assembler, const MicroSetting& setting)
@@ -28,12 +23,13 @@ OperatorWriter::OperatorWriter(Assembler& assembler, const MicroSetting& setting
       f_(word_ - 1) {}
 
 /// The line of a table at the argument `part`, rounded to a mantissa.
-RegisterIndex OperatorWriter::line(const std::string& name, const MicroTable& table, RegisterIndex part,
-                                   int rest_bits) {
-    const RegisterIndex r = a_.reg(name + ".r", word_ + 1, f_);
+RegisterIndex OperatorWriter::line(const std::string& name, const std::string& table_name,
+                                   const Operators::Table& table, RegisterIndex part, int more) {
+    const int rest_bits = table.rest_bits;
+    const RegisterIndex r = a_.reg(name + ".r", word_ + 1 + more, f_);
     const RegisterIndex rise = a_.reg(name + ".rise", word_ + 1, f_);
     const RegisterIndex rest = a_.reg(name + ".rest", std::max(rest_bits, 1) + 1, rest_bits);
-    a_.table(r, rise, table, part, rest_bits);
+    a_.table(r, rise, table_of(table_name, table), part, rest_bits);
     a_.low(rest, part, rest_bits);
     a_.sum(r, r, {{rise, rest}});
     return r;
@@ -42,7 +38,6 @@ RegisterIndex OperatorWriter::line(const std::string& name, const MicroTable& ta
 OperatorWriter::Float OperatorWriter::reciprocal(const std::string& name, RegisterIndex x, int bits,
                                                  int fraction) {
     const Iteration method = setting_.numbers.operators.reciprocal;
-    expect_program(method);
     const RegisterIndex size = a_.reg(name + ".size", bits + 1, fraction);
     const RegisterIndex exponent = a_.reg(name + ".exponent", 8, 0);
     // A mantissa without a sign fills a word; rounded up it may be one more.
@@ -64,9 +59,9 @@ OperatorWriter::Float OperatorWriter::reciprocal(const std::string& name, Regist
     a_.label(name + " normal");
     a_.move(m, rounded);
     a_.label(name + " look up");
+    if (method == Iteration::rounded) return {divide(name, m), exponent};
     a_.low(part, m, f_);
-    const Operators::Table& table = operators_.reciprocals();
-    const RegisterIndex r = line(name, table_of("reciprocal", table), part, table.rest_bits);
+    const RegisterIndex r = line(name, "reciprocal", operators_.reciprocals(), part);
     if (method == Iteration::newton) {
         a_.sum(part, over, {{m, r, true}});  // 2 − m·r
         a_.sum(r, Assembler::none, {{r, part}});
@@ -76,7 +71,6 @@ OperatorWriter::Float OperatorWriter::reciprocal(const std::string& name, Regist
 
 OperatorWriter::Float OperatorWriter::root(const std::string& name, RegisterIndex x, int fraction) {
     const Iteration method = setting_.numbers.operators.root;
-    expect_program(method);
     const RegisterIndex count = a_.reg(name + ".count", 8, 0);
     const RegisterIndex odd = a_.reg(name + ".odd", 8, 0);
     const RegisterIndex exponent = a_.reg(name + ".exponent", 8, 0);
@@ -104,13 +98,17 @@ OperatorWriter::Float OperatorWriter::root(const std::string& name, RegisterInde
     a_.label(name + " normal");
     a_.move(m, rounded);
     a_.label(name + " octave");
+    if (method == Iteration::rounded) {
+        a_.halve(exponent, count);
+        return {divide_root(name, m), exponent};
+    }
     a_.jump_less(m, two_m, name + " low");
     for (const int octave : {1, 0}) {
         const std::string part_name = name + (octave == 0 ? ".low" : ".high");
         if (octave == 0) a_.label(name + " low");
         const Operators::Table& table = operators_.roots(octave);
         a_.low(part, m, f_ - 1 + octave);
-        a_.move(r, line(part_name, table_of("root " + std::to_string(octave), table), part, table.rest_bits));
+        a_.move(r, line(part_name, "root " + std::to_string(octave), table, part));
         if (octave == 1) a_.jump(name + " looked up");
     }
     a_.label(name + " looked up");
@@ -125,7 +123,8 @@ OperatorWriter::Float OperatorWriter::root(const std::string& name, RegisterInde
     return {r, exponent};
 }
 
-void OperatorWriter::normalise(const std::string& name, const Vector& v, int bits, const Vector& out) {
+OperatorWriter::Normalised OperatorWriter::normalise(const std::string& name, const Vector& v, int bits,
+                                                     const Vector& out, const std::string& zero) {
     const RegisterIndex size = a_.reg(name + ".largest", bits + 1, 0);
     const RegisterIndex other = a_.reg(name + ".other", bits + 1, 0);
     const RegisterIndex count = a_.reg(name + ".count", 8, 0);
@@ -137,6 +136,7 @@ void OperatorWriter::normalise(const std::string& name, const Vector& v, int bit
         a_.absolute_of(other, v[std::size_t(i)]);
         a_.most(size, size, other);
     }
+    if (!zero.empty()) a_.jump_zero(size, zero);
     a_.count(count, size);
     for (std::size_t i = 0; i < 3; ++i) {
         m[i] = a_.reg(name + ".m" + std::to_string(i), word_, word_ - 1);
@@ -146,6 +146,7 @@ void OperatorWriter::normalise(const std::string& name, const Vector& v, int bit
     const Float inverse = root(name + ".root", squared, formats_.field.fraction_bits());
     for (std::size_t i = 0; i < 3; ++i)
         a_.sum(out[i], Assembler::none, {{m[i], inverse.mantissa}}, inverse.exponent);
+    return {count, squared, inverse};
 }
 
 }  // namespace raycell

@@ -22,11 +22,31 @@ class OperatorWriter {
     /// 1/sqrt(x).
     Float root(const std::string& name, RegisterIndex x, int fraction);
     using Vector = std::array<RegisterIndex, 3>;
-    /// out = v / |v|, words of `unit`; `bits`: of each of v's components.
-    void normalise(const std::string& name, const Vector& v, int bits, const Vector& out);
+    /// What normalise() leaves: |v|^2 = squared · 4^(1 − count), and 1/sqrt(squared). `count` is −floor(log2)
+    /// of the largest component as a whole number.
+    struct Normalised {
+        RegisterIndex count;
+        RegisterIndex squared;
+        Float inverse;
+    };
+    /// out = v / |v|, words of `unit`; `bits`: of each of v's components. With `zero`: jumps there if v is 0.
+    Normalised normalise(const std::string& name, const Vector& v, int bits, const Vector& out,
+                         const std::string& zero = "");
+    /// base^exponent, a word of `unit`, as is the base. `exponent` is held as Operators::exponent_word(). For
+    /// `rounded`, which has no program, a register that holds the power beforehand.
+    RegisterIndex power(const std::string& name, RegisterIndex base, RegisterIndex exponent);
+    const Operators& operators() const { return operators_; }
 
   private:
-    RegisterIndex line(const std::string& name, const MicroTable& table, RegisterIndex part, int rest_bits);
+    /// `more`: bits that the result may have above a mantissa's.
+    RegisterIndex line(const std::string& name, const std::string& table_name, const Operators::Table& table,
+                       RegisterIndex part, int more = 0);
+    RegisterIndex divide(const std::string& name, RegisterIndex m);
+    RegisterIndex divide_root(const std::string& name, RegisterIndex m);
+    void tables_power(const std::string& name, RegisterIndex base, RegisterIndex exponent,
+                      RegisterIndex result);
+    void schlick_power(const std::string& name, RegisterIndex base, RegisterIndex exponent, RegisterIndex one,
+                       RegisterIndex result);
 
     Assembler& a_;
     const MicroSetting& setting_;

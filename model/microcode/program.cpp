@@ -12,10 +12,10 @@ namespace {
 
 using Op = MicroInstruction::Op;
 
-constexpr const char* op_names[] = {
-    "constant", "move",  "add",       "subtract",      "least",     "most",       "load",
-    "add to",   "clear", "absolute",  "count",         "low",       "table",      "multiply",
-    "round",    "jump",  "jump less", "jump negative", "jump zero", "jump minus", "end"};
+constexpr const char* op_names[] = {"constant",  "move",          "add",       "subtract",   "least", "most",
+                                    "load",      "add to",        "clear",     "absolute",   "count", "low",
+                                    "high",      "bit",           "table",     "multiply",   "round", "jump",
+                                    "jump less", "jump negative", "jump zero", "jump minus", "end"};
 
 /// Bits of a two's complement word that holds the value.
 int bits_of(__int128 value) {
@@ -87,6 +87,12 @@ std::string MicroProgram::listing() const {
             case Op::low:
                 text += " " + reg(i.target) + " = " + reg(i.a) + " below 2^" + std::to_string(i.shift);
                 break;
+            case Op::high:
+                text += " " + reg(i.target) + " = " + reg(i.a) + " >> " + std::to_string(i.shift);
+                break;
+            case Op::bit:
+                text += " " + reg(i.target) + " = bit " + reg(i.b) + " of " + reg(i.a);
+                break;
             case Op::table:
                 text += " " + reg(i.target) + ", " + reg(i.b) + " = " + tables[i.table_index].name + " at " +
                         reg(i.a) + " >> " + std::to_string(i.shift);
@@ -124,21 +130,28 @@ std::string MicroProgram::listing() const {
 
 MicroMachine::MicroMachine(const MicroProgram& program)
     : program_(program), values_(program.registers.size(), 0) {
+    for (RegisterIndex i = 0; i < program.registers.size(); ++i) {
+        names_.emplace(program.registers[i].name, i);
+        most_.push_back((Value(1) << (program.registers[i].bits - 1)) - 1);
+    }
     for (const MicroInstruction& i : program.instructions) {
         if (i.op == Op::constant) set(i.target, i.value);
     }
 }
 
-void MicroMachine::set(RegisterIndex index, std::int64_t value) {
-    const MicroRegister& r = program_.registers[index];
-    if (bits_of(value) > r.bits)
-        throw std::logic_error("microprogram " + program_.name + ": " + std::to_string(value) +
+MicroMachine::Value MicroMachine::checked(RegisterIndex index, Value value) const {
+    if (value > most_[index] || ~value > most_[index]) {
+        const MicroRegister& r = program_.registers[index];
+        throw std::logic_error("microprogram " + program_.name + ": " + std::to_string(double(value)) +
                                " does not fit the " + std::to_string(r.bits) + " bits of " + r.name);
-    values_[index] = value;
+    }
+    return value;
 }
 
+int MicroMachine::accumulator_bits() const { return bits_of(accumulator_used_); }
+
 void MicroMachine::put(const std::string& name, double value) {
-    const RegisterIndex index = program_.find(name);
+    const RegisterIndex index = names_.at(name);
     const double word = scale_by(value, program_.registers[index].fraction);
     if (word != std::floor(word))
         throw std::logic_error("microprogram " + program_.name + ": no word for " + name);
@@ -146,24 +159,24 @@ void MicroMachine::put(const std::string& name, double value) {
 }
 
 double MicroMachine::take(const std::string& name) const {
-    const RegisterIndex index = program_.find(name);
+    const RegisterIndex index = names_.at(name);
     return scale_by(double(values_[index]), -program_.registers[index].fraction);
 }
 
-std::int64_t MicroMachine::part(RegisterIndex index, int number, int width) const {
+MicroMachine::Value MicroMachine::part(RegisterIndex index, int number, int width) const {
     const int step = width - 1;
     const bool last = number + 1 == parts_of(program_.registers[index].bits, width);
-    const std::int64_t rest = values_[index] >> (number * step);
-    return last ? rest : rest & ((std::int64_t(1) << step) - 1);
+    const Value rest = values_[index] >> (number * step);
+    return last ? rest : rest & ((Value(1) << step) - 1);
 }
 
 /// The accumulator / 2^shift, to the nearest (ties to even) or cut off, saturated to `bits` bits.
-std::int64_t MicroMachine::rounded(int shift, int bits, bool nearest) const {
+MicroMachine::Value MicroMachine::rounded(int shift, int bits, bool nearest) const {
     const __int128 most = (__int128(1) << (bits - 1)) - 1;
     __int128 value = accumulator_;
     if (shift < 0) {
         // Beyond every register: saturates, whatever is shifted in.
-        if (value != 0 && bits_of(value) - shift > 120) return std::int64_t(value > 0 ? most : -most - 1);
+        if (value != 0 && bits_of(value) - shift > 120) return value > 0 ? most : -most - 1;
         value *= __int128(1) << -shift;
     } else if (shift > 125) {
         value = value < 0 && !nearest ? -1 : 0;
@@ -174,10 +187,11 @@ std::int64_t MicroMachine::rounded(int shift, int bits, bool nearest) const {
         const bool up = nearest && (rest > half || (rest == half && (down & 1)));
         value = down + (up ? 1 : 0);
     }
-    return std::int64_t(std::clamp(value, -most - 1, most));
+    return std::clamp(value, -most - 1, most);
 }
 
 int MicroMachine::run(int limit) {
+    const auto write = [this](RegisterIndex index, Value value) { values_[index] = checked(index, value); };
     std::size_t at = 0;
     for (int cycles = 1; cycles <= limit; ++cycles) {
         const MicroInstruction& i = program_.instructions.at(at++);
@@ -186,59 +200,65 @@ int MicroMachine::run(int limit) {
                 --cycles;
                 break;
             case Op::move:
-                set(i.target, values_[i.a]);
+                write(i.target, values_[i.a]);
                 break;
             case Op::add:
-                set(i.target, values_[i.a] + values_[i.b]);
+                write(i.target, values_[i.a] + values_[i.b]);
                 break;
             case Op::subtract:
-                set(i.target, values_[i.a] - values_[i.b]);
+                write(i.target, values_[i.a] - values_[i.b]);
                 break;
             case Op::least:
-                set(i.target, std::min(values_[i.a], values_[i.b]));
+                write(i.target, std::min(values_[i.a], values_[i.b]));
                 break;
             case Op::most:
-                set(i.target, std::max(values_[i.a], values_[i.b]));
+                write(i.target, std::max(values_[i.a], values_[i.b]));
                 break;
             case Op::load:
-                accumulator_ = __int128(values_[i.a]) * (__int128(1) << i.shift);
+                accumulator_ = values_[i.a] * (__int128(1) << i.shift);
                 break;
             case Op::take_off:
-                accumulator_ += __int128(i.value) * values_[i.a] * (__int128(1) << i.shift);
+                accumulator_ += Value(i.value) * values_[i.a] * (__int128(1) << i.shift);
                 break;
             case Op::clear:
                 accumulator_ = 0;
                 break;
             case Op::absolute:
-                set(i.target, values_[i.a] < 0 ? -values_[i.a] : values_[i.a]);
+                write(i.target, values_[i.a] < 0 ? -values_[i.a] : values_[i.a]);
                 break;
             case Op::count:
                 if (values_[i.a] <= 0)
                     throw std::logic_error("microprogram " + program_.name + ": log2 of no number");
-                set(i.target, __builtin_clzll(std::uint64_t(values_[i.a])) - 63);
+                write(i.target, 2 - bits_of(values_[i.a]));
                 break;
             case Op::low:
-                set(i.target, values_[i.a] & ((std::int64_t(1) << i.shift) - 1));
+                write(i.target, values_[i.a] & ((Value(1) << i.shift) - 1));
+                break;
+            case Op::high:
+                write(i.target, values_[i.a] >> i.shift);
+                break;
+            case Op::bit:
+                write(i.target, values_[i.a] >> int(values_[i.b]) & 1);
                 break;
             case Op::table: {
                 const auto& line =
                     program_.tables[i.table_index].lines.at(std::size_t(values_[i.a] >> i.shift));
-                set(i.target, line.start);
-                set(i.b, line.rise);
+                write(i.target, line.start);
+                write(i.b, line.rise);
                 break;
             }
             case Op::multiply:
                 for (const auto& p : i.products) {
-                    const __int128 product = __int128(part(p.a, p.a_part, program_.datapath.first_bits)) *
-                                             part(p.b, p.b_part, program_.datapath.second_bits) *
-                                             (__int128(1) << p.shift);
+                    const Value product = part(p.a, p.a_part, program_.datapath.first_bits) *
+                                          part(p.b, p.b_part, program_.datapath.second_bits) *
+                                          (Value(1) << p.shift);
                     accumulator_ += p.negative ? -product : product;
                 }
                 break;
             case Op::round:
-                set(i.target, rounded(i.shift - (i.shifts_by ? int(values_[i.b]) : 0),
-                                      program_.registers[i.target].bits,
-                                      i.nearest || program_.rounding == Rounding::nearest));
+                write(i.target, rounded(i.shift - (i.shifts_by ? int(values_[i.b]) : 0),
+                                        program_.registers[i.target].bits,
+                                        i.nearest || program_.rounding == Rounding::nearest));
                 break;
             case Op::jump:
                 at = i.to;
@@ -258,7 +278,7 @@ int MicroMachine::run(int limit) {
             case Op::end:
                 return cycles - 1;  // fetched while the last instruction runs
         }
-        accumulator_bits_ = std::max(accumulator_bits_, bits_of(accumulator_));
+        accumulator_used_ |= accumulator_ < 0 ? ~accumulator_ : accumulator_;
     }
     throw std::logic_error("microprogram " + program_.name + " does not end");
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct MicroInstruction {
         absolute,   ///< target = |a|
         count,      ///< target = −floor(log2(a)), a > 0
         low,        ///< target = the last `shift` bits of a
+        high,       ///< target = a / 2^shift, cut off
+        bit,        ///< target = bit number b of a
         table,      ///< target, second target = the line of the table that a's bits from `shift` on select
         multiply,   ///< accumulator += the products
         round,      ///< target = accumulator / 2^shift, rounded and saturated; with `by`, / 2^(shift − by)
@@ -102,25 +105,32 @@ struct MicroProgram {
 class MicroMachine {
   public:
     /// `program` must outlive it.
+    using Value = __int128;  ///< of a register: up to 127 bits
+
     explicit MicroMachine(const MicroProgram& program);
-    void set(RegisterIndex index, std::int64_t value);
-    std::int64_t get(RegisterIndex index) const { return values_[index]; }
+    void set(RegisterIndex index, std::int64_t value) { values_[index] = checked(index, value); }
+    std::int64_t get(RegisterIndex index) const { return std::int64_t(values_[index]); }
+    /// Of all registers.
+    const std::vector<Value>& values() const { return values_; }
     /// The same by name, as numbers: a register's raw word times its last bit.
     void put(const std::string& name, double value);
     double take(const std::string& name) const;
     /// Runs to the end and returns the cycles. Throws std::logic_error beyond `limit` cycles.
     int run(int limit = 100000);
     /// Bits of the accumulator that were needed so far, over all runs.
-    int accumulator_bits() const { return accumulator_bits_; }
+    int accumulator_bits() const;
 
   private:
-    std::int64_t part(RegisterIndex index, int number, int width) const;
-    std::int64_t rounded(int shift, int bits, bool nearest) const;
+    Value part(RegisterIndex index, int number, int width) const;
+    Value rounded(int shift, int bits, bool nearest) const;
+    Value checked(RegisterIndex index, Value value) const;
 
     const MicroProgram& program_;
-    std::vector<std::int64_t> values_;
-    __int128 accumulator_ = 0;
-    int accumulator_bits_ = 0;
+    std::unordered_map<std::string, RegisterIndex> names_;
+    std::vector<Value> most_;  ///< of each register
+    std::vector<Value> values_;
+    Value accumulator_ = 0;
+    Value accumulator_used_ = 0;  ///< every bit that an accumulator had so far, the sign left out
 };
 
 /// Writes a program: registers by name, sums of products cut to the datapath's multipliers, labels.
@@ -167,6 +177,9 @@ class Assembler {
     void halve(RegisterIndex target, RegisterIndex a);
     void count(RegisterIndex target, RegisterIndex a);
     void low(RegisterIndex target, RegisterIndex a, int bits);
+    /// target = a / 2^shift, cut off; last bits are taken as 1.
+    void high(RegisterIndex target, RegisterIndex a, int shift);
+    void bit(RegisterIndex target, RegisterIndex a, RegisterIndex number);
     /// The start and the rise of a table's line, selected by a's bits from `shift` on.
     void table(RegisterIndex start, RegisterIndex rise, const MicroTable& lines, RegisterIndex a, int shift);
 
@@ -175,10 +188,19 @@ class Assembler {
     void jump_less(RegisterIndex a, RegisterIndex b, const std::string& to);
     void jump_negative(RegisterIndex a, const std::string& to);
     void jump_zero(RegisterIndex a, const std::string& to);
+    /// target = a · 2^shift + b, all whole.
+    void join(RegisterIndex target, RegisterIndex a, int shift, RegisterIndex b);
+    /// target = the accumulator, whose last bit becomes the target's.
+    void keep(RegisterIndex target);
+    /// target = (whole + part) · 2^by, rounded.
+    void scale_sum(RegisterIndex target, RegisterIndex whole, RegisterIndex part, RegisterIndex by);
+    /// To `to` if a·b + c < 0.
+    void jump_product_negative(RegisterIndex c, RegisterIndex a, RegisterIndex b, const std::string& to);
     /// To `to` if the sum of the terms is negative, however their last bits differ.
     struct Term {
         RegisterIndex a;
         bool negative = false;
+        int shift = 0;  ///< counts 2^shift times as much
     };
     void jump_sum_negative(const std::vector<Term>& terms, const std::string& to);
     void end();
@@ -189,6 +211,8 @@ class Assembler {
 
   private:
     MicroInstruction& emit(MicroInstruction::Op op);
+    /// accumulator = c + the products; returns its fraction bits.
+    int accumulate(RegisterIndex c, const std::vector<Factor>& products);
     void jump_to(MicroInstruction::Op op, RegisterIndex a, RegisterIndex b, const std::string& to);
     void same_fraction(RegisterIndex a, RegisterIndex b) const;
 

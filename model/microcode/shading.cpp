@@ -1,4 +1,7 @@
 // Programs of the shading unit.
+#include <cmath>
+#include <stdexcept>
+
 #include "model/microcode/operators.hpp"
 
 namespace raycell {
@@ -66,16 +69,13 @@ MicroProgram normalise_program(const MicroSetting& setting) {
 MicroProgram normal_program(const MicroSetting& setting) {
     const Formats f = setting.formats();
     Assembler a("normal", setting.datapath, setting.numbers.rounding);
-    OperatorWriter operators(a, setting);
     const Vector base = vector(a, "b", f.normal);
     const Vector du = vector(a, "u", f.normal);
     const Vector dv = vector(a, "v", f.normal);
     const RegisterIndex u = a.reg("u", f.depth.bits() + 1, f.depth.fraction_bits());
     const RegisterIndex v = a.reg("v", f.depth.bits() + 1, f.depth.fraction_bits());
-    const Vector field = vector(a, "field ", f.field);
-    const Vector out = vector(a, "n", f.unit);
+    const Vector field = vector(a, "f", f.field);
     for (std::size_t i = 0; i < 3; ++i) a.sum(field[i], base[i], {{u, du[i]}, {v, dv[i]}});
-    operators.normalise("normalise", field, f.field.bits(), out);
     a.end();
     return a.finish();
 }
@@ -167,17 +167,62 @@ MicroProgram refract_program(const MicroSetting& setting) {
     return a.finish();
 }
 
-MicroProgram point_program(const MicroSetting& setting) {
+MicroProgram setup_program(const MicroSetting& setting, const ChildLimits& limits) {
     const Formats f = setting.formats();
-    Assembler a("point", setting.datapath, setting.numbers.rounding);
-    const RegisterIndex t = a.reg("t", f.distance.bits(), f.distance.fraction_bits());
-    for (const char axis : std::string("xyz")) {
-        const std::string name(1, axis);
-        const Format& format = axis == 'z' ? f.depth : f.unit;
-        const RegisterIndex place = a.reg(name, format.bits(), format.fraction_bits());
-        const RegisterIndex direction = a.reg("d" + name, f.unit.bits(), f.unit.fraction_bits());
-        const RegisterIndex point = a.reg("p" + name, format.bits(), format.fraction_bits());
-        a.sum(point, place, {{t, direction}});
+    Assembler a("setup", setting.datapath, setting.numbers.rounding);
+    OperatorWriter operators(a, setting);
+    const auto reg = [&](const std::string& name, const Format& format) {
+        return a.reg(name, format.bits(), format.fraction_bits());
+    };
+    const RegisterIndex t = reg("t", f.distance);
+    const Vector place{reg("x", f.unit), reg("y", f.unit), reg("z", f.depth)};
+    const Vector point{reg("px", f.unit), reg("py", f.unit), reg("pz", f.depth)};
+    const Vector direction = vector(a, "d", f.unit);
+    const Vector field = vector(a, "f", f.field);
+    const Vector plane = vector(a, "g", f.unit);
+    const Vector normal = vector(a, "n", f.unit);
+    const RegisterIndex entering = a.reg("entering", 2, 0);
+    const RegisterIndex squared = reg("squared", f.accumulator);
+    const RegisterIndex along = reg("along", f.accumulator);
+    const double step = f.normal.step();
+    const RegisterIndex least = a.constant("least", std::int64_t(64 * step * step / f.accumulator.step()),
+                                           f.accumulator.bits(), f.accumulator.fraction_bits());
+    const RegisterIndex zero = a.constant("0", 0, 2, f.unit.fraction_bits());
+    const RegisterIndex no = a.constant("no", 0, 2, 0);
+    const RegisterIndex yes = a.constant("yes", 1, 2, 0);
+    for (std::size_t i = 0; i < 3; ++i) a.sum(point[i], place[i], {{t, direction[i]}});
+    a.sum_to_nearest(squared, Assembler::none,
+                     {{field[0], field[0]}, {field[1], field[1]}, {field[2], field[2]}});
+    a.jump_less(least, squared, "has a direction");
+    for (std::size_t i = 0; i < 3; ++i) a.round(field[i], plane[i]);
+    a.label("has a direction");
+    operators.normalise("normalise", field, f.field.bits(), normal);
+    a.sum_to_nearest(along, Assembler::none,
+                     {{normal[0], direction[0]}, {normal[1], direction[1]}, {normal[2], direction[2]}});
+    a.move(entering, yes);
+    a.jump_negative(along, "turned");
+    a.move(entering, no);
+    for (std::size_t i = 0; i < 3; ++i) a.subtract(normal[i], zero, normal[i]);
+    a.label("turned");
+    // Which children are worth sending.
+    const RegisterIndex weight = reg("weight", f.unit);
+    const RegisterIndex generation = a.reg("generation", 7, 0);
+    const RegisterIndex last = a.constant("last", limits.max_depth, 7, 0);
+    const int fraction = f.unit.fraction_bits() + f.feature.fraction_bits();
+    const auto weighs = std::int64_t(std::ceil(limits.min_weight * std::exp2(fraction)));
+    const RegisterIndex too_little = a.constant("too little", -weighs, fraction + 3, fraction);
+    const std::array<RegisterIndex, 2> share{reg("mirror", f.feature), reg("transmit", f.feature)};
+    const std::array<RegisterIndex, 2> sends{a.reg("reflects", 2, 0), a.reg("refracts", 2, 0)};
+    for (const RegisterIndex send : sends) a.move(send, no);
+    a.jump_less(generation, last, "has children");
+    a.end();
+    a.label("has children");
+    for (std::size_t i = 0; i < 2; ++i) {
+        const std::string next = i == 0 ? "transmits" : "done";
+        a.jump_zero(share[i], next);
+        a.jump_product_negative(too_little, weight, share[i], next);
+        a.move(sends[i], yes);
+        a.label(next);
     }
     a.end();
     return a.finish();
@@ -189,19 +234,65 @@ MicroProgram light_program(const MicroSetting& setting) {
     const auto reg = [&](const char* name, const Format& format) {
         return a.reg(name, format.bits(), format.fraction_bits());
     };
+    OperatorWriter operators(a, setting);
+    const Format& shine_word = operators.operators().exponent_word();
     const RegisterIndex cosine = reg("cosine", f.unit);
     const RegisterIndex kd = reg("kd", f.feature);
+    const RegisterIndex ks = reg("ks", f.feature);
+    const RegisterIndex shine = reg("shine", shine_word);
+    const Vector mirrored = vector(a, "r", f.unit);
+    const Vector direction = vector(a, "l", f.unit);
     const Vector colour = vector(a, "c", f.feature);
-    const RegisterIndex highlight = reg("highlight", f.intensity);
     const Vector intensity = vector(a, "i", f.intensity);
     const Vector sum = vector(a, "s", f.intensity);
+    const RegisterIndex along = reg("along", f.unit);
+    const RegisterIndex highlight = reg("highlight", f.intensity);
     const RegisterIndex diffuse = reg("diffuse", f.unit);
     const RegisterIndex share = reg("share", f.intensity);
+    const RegisterIndex none = a.constant("0", 0, 2, f.intensity.fraction_bits());
+    a.move(highlight, none);
+    a.jump_zero(ks, "diffuse");
+    a.sum(along, Assembler::none,
+          {{mirrored[0], direction[0]}, {mirrored[1], direction[1]}, {mirrored[2], direction[2]}});
+    a.jump_negative(along, "diffuse");
+    a.jump_zero(along, "diffuse");
+    const RegisterIndex power = operators.power("power", along, shine);
+    a.sum(highlight, Assembler::none, {{ks, power}});
+    a.label("diffuse");
     a.sum(diffuse, Assembler::none, {{kd, cosine}});
     for (std::size_t i = 0; i < 3; ++i) {
         a.sum(share, highlight, {{diffuse, colour[i]}});
         a.sum(sum[i], sum[i], {{intensity[i], share}});
     }
+    a.end();
+    return a.finish();
+}
+
+MicroProgram power_program(const MicroSetting& setting) {
+    const Format unit = setting.formats().unit;
+    Assembler a("power", setting.datapath, setting.numbers.rounding);
+    OperatorWriter operators(a, setting);
+    const Format& shine_word = operators.operators().exponent_word();
+    const RegisterIndex base = a.reg("base", unit.bits(), unit.fraction_bits());
+    const RegisterIndex shine = a.reg("shine", shine_word.bits(), shine_word.fraction_bits());
+    if (setting.numbers.operators.power == PowerMethod::rounded)
+        throw std::invalid_argument("power, correctly rounded, has no microprogram");
+    operators.power("power", base, shine);
+    a.end();
+    return a.finish();
+}
+
+MicroProgram ambient_program(const MicroSetting& setting) {
+    const Formats f = setting.formats();
+    Assembler a("ambient", setting.datapath, setting.numbers.rounding);
+    const RegisterIndex kd = a.reg("kd", f.feature.bits(), f.feature.fraction_bits());
+    const Vector colour = vector(a, "c", f.feature);
+    const Vector sum = vector(a, "s", f.intensity);
+    const RegisterIndex tenth = a.constant("0.1", std::int64_t(f.unit.hold(0.1) / f.unit.step()),
+                                           f.unit.bits(), f.unit.fraction_bits());
+    const RegisterIndex ambient = a.reg("ambient", f.unit.bits(), f.unit.fraction_bits());
+    a.sum(ambient, Assembler::none, {{tenth, kd}});
+    for (std::size_t i = 0; i < 3; ++i) a.sum(sum[i], Assembler::none, {{ambient, colour[i]}});
     a.end();
     return a.finish();
 }

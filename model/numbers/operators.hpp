@@ -63,6 +63,11 @@ class Operators {
     const Table& reciprocals() const { return reciprocals_; }
     /// 1/sqrt(m) over [1, 2) (octave 0) and [2, 4) (octave 1).
     const Table& roots(int octave) const { return roots_[octave]; }
+    /// log2(m) over [1, 2) and 2^x over [0, 1).
+    const Table& logarithms() const { return logarithms_; }
+    const Table& exponentials() const { return exponentials_; }
+    /// power's exponent as it is held.
+    const Format& exponent_word() const { return exponent_word_; }
 
   private:
     template <class Curve>

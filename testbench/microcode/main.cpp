@@ -6,7 +6,7 @@
 
 #include "testbench/common/entry.hpp"
 #include "testbench/common/options.hpp"
-#include "testbench/microcode/trials.hpp"
+#include "testbench/microcode/counts.hpp"
 #include "testbench/raycell/commands.hpp"
 
 namespace raycell {
@@ -19,6 +19,7 @@ struct Options {
     std::uint64_t seed = 1;
     std::string datapath;
     std::string listing;
+    bool progress = false;
 };
 
 void add_options(OptionTable& table, Options& o) {
@@ -27,11 +28,14 @@ void add_options(OptionTable& table, Options& o) {
     table.choice("rounding", o.numbers.rounding,
                  {{"nearest", Rounding::nearest}, {"truncate", Rounding::truncate}},
                  "words: to the nearest, ties to even, or cut off");
-    const std::vector<std::pair<std::string, Iteration>> iterations = {{"newton", Iteration::newton},
-                                                                       {"table", Iteration::table}};
+    const std::vector<std::pair<std::string, Iteration>> iterations = {
+        {"newton", Iteration::newton}, {"table", Iteration::table}, {"rounded", Iteration::rounded}};
     table.choice("reciprocal", o.numbers.operators.reciprocal, iterations,
-                 "1/x: a table and one Newton step, or the table alone");
+                 "1/x: a table and one Newton step, the table alone, or digit by digit");
     table.choice("root", o.numbers.operators.root, iterations, "1/sqrt(x), in the same ways");
+    table.choice("power", o.numbers.operators.power,
+                 {{"tables", PowerMethod::tables}, {"schlick", PowerMethod::schlick}},
+                 "Phong's power: by log2 and exp2 tables, or Schlick's fraction");
     table.size("cells", o.extent.width, o.extent.height,
                "the array, whose size decides how wide a distance is");
     table.number("cube-depth", o.extent.depth, 1.0, 65536.0, "depth of the cube, cells: how wide a depth is");
@@ -39,6 +43,7 @@ void add_options(OptionTable& table, Options& o) {
     table.number("runs", o.runs, std::uint64_t(1), std::uint64_t(1) << 40, "random inputs of each program");
     table.number("seed", o.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1, "of the inputs");
     table.text("datapath", o.datapath, "NAME", "word, wide or two alone; empty: all");
+    table.flag("progress", o.progress, "says on standard error which programs are done");
     table.text("listing", o.listing, "PROGRAM", "prints the instructions of this program, too");
 }
 
@@ -52,11 +57,15 @@ std::string one_digit(double value) {
 void try_all(const MicroSetting& setting, const Options& o, bool& listed) {
     for (const auto& trial : micro_trials(setting)) {
         const MicroTally tally = run_trial(*trial, o.runs, o.seed);
+        if (o.progress)
+            std::cerr << setting.datapath.name << " " << trial->program().name << ": " << o.runs
+                      << " inputs\n";
         const MicroProgram& p = trial->program();
-        std::cout << "| " << setting.datapath.name << " | " << p.name << " | `" << trial->cost() << "` | "
-                  << trial->table_cycles() << " | " << tally.least << " | " << one_digit(tally.mean) << " | "
-                  << tally.most << " | " << p.registers.size() << " | " << p.register_bits() << " | "
-                  << trial->accumulator_bits() << " | " << p.words() << " | " << p.memory_bits() << " |\n";
+        std::cout << "| " << setting.datapath.name << " | " << p.name << " | `" << trial->cost_name()
+                  << "` | " << table_cycles(CostTable(), *trial) << " | " << tally.least << " | "
+                  << one_digit(tally.mean) << " | " << tally.most << " | " << p.registers.size() << " | "
+                  << p.register_bits() << " | " << trial->accumulator_bits() << " | " << p.words() << " | "
+                  << p.memory_bits() << " |\n";
     }
     if (o.listing.empty()) return;
     for (const auto& trial : micro_trials(setting)) {

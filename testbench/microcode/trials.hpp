@@ -34,6 +34,15 @@ struct MicroDifference : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// What a program stands for in the cost table: an entry, and operators that have entries of their own.
+struct MicroCost {
+    std::string entry;  ///< "reciprocal", "root", "power": the method's; empty: none
+    int times = 1;      ///< how often the entry contains it
+    int reciprocals = 0;
+    int roots = 0;
+    int powers = 0;
+};
+
 /// One program on one datapath.
 class MicroTrial {
   public:
@@ -47,18 +56,19 @@ class MicroTrial {
 
     const MicroProgram& program() const { return program_; }
     int accumulator_bits() const { return machine_.accumulator_bits(); }
-    /// The entries of the cost table that the program stands for: "walk_step", "compare_edge + per_edge".
-    const std::string& cost() const { return cost_; }
-    /// Cycles by the cost table.
-    int table_cycles() const { return table_cycles_; }
+    const MicroCost& cost() const { return cost_; }
+    /// The entries of the cost table that the program stands for, as "compare_edge + reciprocal".
+    std::string cost_name() const;
+    const OperatorSettings& operators() const { return operators_; }
 
   protected:
-    MicroTrial(const MicroSetting& setting, MicroProgram program, std::string cost, int table_cycles);
+    MicroTrial(const MicroSetting& setting, MicroProgram program, MicroCost cost);
     virtual void draw(MicroRandom& random) = 0;
     /// Calls expect() for every result.
     virtual void compare() = 0;
 
     void put(const std::string& name, double value) { machine_.put(name, value); }
+    void put_bits(const std::string& name, std::int64_t bits) { machine_.set(program_.find(name), bits); }
     double take(const std::string& name) const { return machine_.take(name); }
     void put(const std::string& before, const dvec3& v, const std::string& after = "");
     void expect(const std::string& name, double found, double wanted) const;
@@ -67,11 +77,13 @@ class MicroTrial {
     Arithmetic arithmetic_;
 
   private:
+    std::string input_text() const;
+
     MicroProgram program_;
     MicroMachine machine_;
-    std::string cost_;
-    int table_cycles_;
-    std::string inputs_;
+    MicroCost cost_;
+    OperatorSettings operators_;
+    std::vector<MicroMachine::Value> inputs_;
 };
 
 /// A trial of every program.

@@ -20,9 +20,12 @@ TEST_P(MicrocodeOf, EveryProgramEqualsTheModelOnEveryDatapath) {
     setting.numbers.word_bits = GetParam();
     setting.extent = {128, 100, 170.3, 0.25};
     for (const Rounding rounding : {Rounding::nearest, Rounding::truncate}) {
-        for (const Iteration method : {Iteration::newton, Iteration::table}) {
+        for (const Iteration method : {Iteration::newton, Iteration::table, Iteration::rounded}) {
             setting.numbers.rounding = rounding;
             setting.numbers.operators.reciprocal = setting.numbers.operators.root = method;
+            setting.numbers.operators.power = method == Iteration::newton  ? PowerMethod::tables
+                                              : method == Iteration::table ? PowerMethod::schlick
+                                                                           : PowerMethod::rounded;
             for (const Datapath& datapath : datapaths(GetParam(), widest_operand(setting.formats()))) {
                 setting.datapath = datapath;
                 for (const auto& trial : micro_trials(setting)) {
@@ -116,11 +119,51 @@ TEST(Microcode, AValueThatDoesNotFitItsRegisterIsAnError) {
     EXPECT_THROW(nowhere.finish(), std::logic_error);
 }
 
-TEST(Microcode, DigitByDigitThereIsNoProgram) {
+TEST(Microcode, OfAPowerThatTheModelTakesFromALibraryThereIsNoProgram) {
     MicroSetting setting;
     setting.datapath = datapaths(20, 30)[0];
-    setting.numbers.operators.reciprocal = Iteration::rounded;
-    EXPECT_THROW(reciprocal_program(setting), std::invalid_argument);
+    setting.numbers.operators.power = PowerMethod::rounded;
+    EXPECT_THROW(power_program(setting), std::invalid_argument);
+}
+
+TEST(Microcode, AnOperatorDigitByDigitTakesAsManyRoundsAsItsWordHasDigits) {
+    int before = 0;
+    for (const int bits : {8, 16, 24, 32}) {
+        MicroSetting setting;
+        setting.numbers.word_bits = bits;
+        setting.datapath = datapaths(bits, widest_operand(setting.formats()))[0];
+        setting.numbers.operators.reciprocal = Iteration::rounded;
+        const MicroProgram program = reciprocal_program(setting);
+        MicroMachine machine(program);
+        machine.put("x", 0.75);
+        const int cycles = machine.run();
+        if (before != 0) {
+            EXPECT_NEAR(cycles - before, 8 * 5, 8) << bits << " bits";
+        }
+        before = cycles;
+    }
+}
+
+TEST(Microcode, ABitOfARegisterAndWhatIsAboveItsLastBits) {
+    Assembler assembler("bits", datapaths(20, 30)[0], Rounding::nearest);
+    const RegisterIndex word = assembler.reg("word", 64, 0);
+    const RegisterIndex number = assembler.reg("number", 8, 0);
+    const RegisterIndex bit = assembler.reg("bit", 2, 0);
+    const RegisterIndex above = assembler.reg("above", 64, 0);
+    assembler.bit(bit, word, number);
+    assembler.high(above, word, 4);
+    assembler.end();
+    const MicroProgram program = assembler.finish();
+    MicroMachine machine(program);
+    for (const std::int64_t value : {std::int64_t(0x5a), std::int64_t(-37), std::int64_t(1) << 62}) {
+        for (int i = 0; i < 64; ++i) {
+            machine.set(word, value);
+            machine.set(number, i);
+            EXPECT_EQ(machine.run(), 2);
+            EXPECT_EQ(machine.get(bit), value >> i & 1);
+            EXPECT_EQ(machine.get(above), value >> 4);
+        }
+    }
 }
 
 }  // namespace

@@ -1,0 +1,17 @@
+// The trials, by file.
+#pragma once
+
+#include "testbench/microcode/trials.hpp"
+
+namespace raycell {
+
+using TrialList = std::vector<std::unique_ptr<MicroTrial>>;
+
+TrialList traversal_trials(const MicroSetting& setting);  ///< the walk, the rungs' tests
+TrialList ray_trials(const MicroSetting& setting);        ///< a hit's setup, sources, new rays, answers
+TrialList shading_trials(const MicroSetting& setting);    ///< operators, directions, intensities
+
+/// A unit vector; some components are 0 or small.
+dvec3 any_direction(MicroRandom& random, const Arithmetic& arithmetic);
+
+}  // namespace raycell
