@@ -79,8 +79,8 @@ MicroProgram normal_program(const MicroSetting& setting);
 /// reflect_direction(). In: dx to dz, nx to nz. Out: rx, ry, rz.
 MicroProgram reflect_program(const MicroSetting& setting);
 
-/// refract_direction(). In: dx to dz, nx to nz, ior, entering (0 or 1). Out: total (1: totally reflected, and
-/// nothing else), rx, ry, rz.
+/// transmit_direction(). In: dx to dz, nx to nz, ior, entering (0 or 1). Out: total (1: totally reflected),
+/// rx, ry, rz.
 MicroProgram refract_program(const MicroSetting& setting);
 
 /// When a hit's children are worth sending.

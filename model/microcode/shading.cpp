@@ -159,10 +159,15 @@ MicroProgram refract_program(const MicroSetting& setting) {
         a.sum(way[i], Assembler::none, {{eta, direction[i]}});
         a.sum(way[i], way[i], {{across, normal[i]}});
     }
-    operators.normalise("normalise", way, field.bits(), out);
-    a.end();
+    a.jump("unit");
     a.label("reflected");
     a.move(total, yes);
+    // 2·cosine: the same word, whose last bit is worth twice as much.
+    const RegisterIndex twice = a.reg("twice", f.unit.bits(), f.unit.fraction_bits() - 1);
+    a.reinterpret(twice, cosine);
+    for (std::size_t i = 0; i < 3; ++i) a.sum(way[i], direction[i], {{twice, normal[i]}});
+    a.label("unit");
+    operators.normalise("normalise", way, field.bits(), out);
     a.end();
     return a.finish();
 }

@@ -98,18 +98,19 @@ class EnterTrial : public MicroTrial {
         set_direction(ray_, any_direction(random, arithmetic_), arithmetic_);
         ray_.position = {random.word(f.unit, 0, 1), random.word(f.unit, 0, 1),
                          random.word(f.depth, 0, depth)};
-        end_ = random.word(f.distance, 0, 2);
+        end_ = random.chance(0.1) ? random.word(f.distance, 0, 2) : f.distance.hold(random.uniform(0.1, 1.5));
+        const double z0 = ray_.position.z;
         const double z1 = depth_at(ray_, end_, arithmetic_);
-        const double inside = random.uniform(std::min(z1, ray_.position.z), std::max(z1, ray_.position.z));
-        const double met = random.chance(0.2) ? (random.chance(0.5) ? z1 : ray_.position.z) : inside;
+        // Mostly behind the ray's beginning: a reciprocal is charged for each.
+        const double met = random.chance(0.03)   ? z0
+                           : random.chance(0.05) ? z1
+                                                 : random.uniform(0, 1) * (z1 - z0) + z0;
+        const double room =
+            random.chance(0.05) ? random.uniform(0, 1) : std::abs(met - z0) * random.uniform(0, 1);
         voxel_ = Voxel();
-        const double near = random.chance(0.1) ? random.word(f.depth, 0, depth) : met;
-        voxel_.near = f.depth.hold(std::clamp(near - random.uniform(0, 0.3), 0.0, depth));
-        if (random.chance(0.1)) voxel_.near = f.depth.hold(std::clamp(met, 0.0, depth));
-        voxel_.far =
-            std::max(f.depth.hold(voxel_.near + random.uniform(0, 0.3)), voxel_.near + f.depth.step());
-        if (random.chance(0.1) && met > voxel_.near) voxel_.far = f.depth.hold(met);
-        voxel_.far = std::max(voxel_.far, voxel_.near + f.depth.step());
+        voxel_.near = random.chance(0.05) ? random.word(f.depth, 0, depth)
+                                          : f.depth.hold(std::clamp(met - room, 0.0, depth));
+        voxel_.far = std::max(f.depth.hold(std::max(met + room, voxel_.near)), voxel_.near + f.depth.step());
         put("z", ray_.position.z);
         put("z1", z1);
         put("dz", ray_.direction.z);
