@@ -25,46 +25,58 @@ struct OperatorSettings {
     int power_table = 0;  ///< of each of the two tables
 };
 
-/// All values are cycles. Override from the command line or the configuration: --cost NAME=CYCLES.
+/// What the cycles are counted for: a datapath with one multiplier of words, one with a multiplier that takes
+/// a distance whole, one with two multipliers of words (model/microcode/datapath.hpp); or the estimates by
+/// hand that the table had before there were programs.
+enum class CostBasis { word, wide, two, estimate };
+
+/// All values are cycles. Override from the command line or the configuration: --cost NAME=CYCLES. What a
+/// microprogram exists for is its mean at words of 20 bits, less the operators that are added apart
+/// (docs/reference/microcode.md); the rest are estimates whatever the basis: power_rounded, backoff, loading.
 struct CostTable {
     // Traversal unit: the incremental walk (Amanatides & Woo 1987) and the comparisons with voxels.
-    std::uint32_t walk_step = 4;         ///< next crossing, position on it, cube test
-    std::uint32_t compare_depth = 1;     ///< compares a voxel's run with the ray's, rung `depth`
-    std::uint32_t compare_interval = 2;  ///< the same, the other rungs
-    // Per voxel whose run meets the ray's. A reciprocal is added to each; rungs `depth` and `interval` cost
-    // the reciprocal alone.
-    std::uint32_t compare_plane = 4;  ///< two dot products
-    std::uint32_t compare_mask = 5;
-    std::uint32_t compare_edge = 4;  ///< plus per_edge for every edge that crosses the cell
-    std::uint32_t per_edge = 2;
+    std::uint32_t walk_step;         ///< next crossing, position on it, cube test
+    std::uint32_t compare_depth;     ///< compares a voxel's run with the ray's, rung `depth`
+    std::uint32_t compare_interval;  ///< the same, the other rungs
+    // Per voxel whose run meets the ray's. A reciprocal is added to each.
+    std::uint32_t enter_run;      ///< where the ray enters the run, rungs `depth` and `interval`
+    std::uint32_t compare_plane;  ///< two dot products
+    std::uint32_t compare_mask;
+    std::uint32_t compare_edge;  ///< plus per_edge for every edge that crosses the cell
+    std::uint32_t per_edge;
     // Shading unit: the microprogrammed ALU.
-    std::uint32_t shade_setup = 20;     ///< hit point, normal turned to the ray
-    std::uint32_t normal_linear = 7;    ///< interpolate; plus a root
-    std::uint32_t source_view = 11;     ///< direction and distance to one source, N·L; plus a root
-    std::uint32_t reflect = 6;          ///< plus a root, and a ray's start: two reciprocals
-    std::uint32_t refract = 12;         ///< plus a reciprocal, two roots and a ray's start
-    std::uint32_t local_intensity = 6;  ///< ambient and the final sums
-    std::uint32_t per_lit_source = 14;  ///< diffuse, R·L; plus its power
+    std::uint32_t shade_setup;      ///< hit point, unit normal turned to the ray; plus a root
+    std::uint32_t normal_linear;    ///< interpolates the normal
+    std::uint32_t source_view;      ///< direction and distance to one source, N·L; plus a root
+    std::uint32_t ray_start;        ///< a new ray's place and weight; plus two reciprocals
+    std::uint32_t reflect;          ///< plus a root and a ray's start
+    std::uint32_t refract;          ///< plus a reciprocal, two roots and a ray's start
+    std::uint32_t local_intensity;  ///< ambient and the final sums
+    std::uint32_t per_lit_source;   ///< diffuse, R·L; plus its power
     // Operators, by method (--reciprocal, --root, --power).
-    std::uint32_t reciprocal_newton = 4;    ///< look-up, interpolation, two multiplications
-    std::uint32_t reciprocal_table = 2;     ///< look-up and interpolation
-    std::uint32_t reciprocal_rounded = 20;  ///< one digit per cycle
-    std::uint32_t root_newton = 5;
-    std::uint32_t root_table = 2;
-    std::uint32_t root_rounded = 20;
-    std::uint32_t power_tables = 6;   ///< two look-ups with interpolation, a multiplication, shifts
-    std::uint32_t power_schlick = 3;  ///< plus a reciprocal
-    std::uint32_t power_rounded = 60;
+    std::uint32_t reciprocal_newton;   ///< look-up, interpolation, two multiplications
+    std::uint32_t reciprocal_table;    ///< look-up and interpolation
+    std::uint32_t reciprocal_rounded;  ///< digit by digit
+    std::uint32_t root_newton;
+    std::uint32_t root_table;
+    std::uint32_t root_rounded;
+    std::uint32_t power_tables;   ///< two look-ups with interpolation, a multiplication, shifts
+    std::uint32_t power_schlick;  ///< plus a reciprocal
+    std::uint32_t power_rounded;
     // Router and ray store.
-    std::uint32_t route_return = 1;  ///< an answer from its arrival to an output or home
-    std::uint32_t backoff = 64;      ///< shortest wait before a postponed ray is sent again
+    std::uint32_t route_return;  ///< an answer from its arrival to an output or home
+    std::uint32_t backoff;       ///< shortest wait before a postponed ray is sent again
     // Loading.
-    std::uint32_t load_voxel = 12;   ///< a cell makes its voxel and advances the span
-    std::uint32_t load_forward = 1;  ///< a cell latches or only passes a load message
-    std::uint32_t geometry_polygon = 40;
-    std::uint32_t precomputation_trapeze = 20;
-    std::uint32_t distribution_span = 8;  ///< a row cuts its span from a trapeze
-    std::uint32_t distribution_pass = 1;
+    std::uint32_t load_voxel;    ///< a cell makes its voxel and advances the span
+    std::uint32_t load_forward;  ///< a cell latches or only passes a load message
+    std::uint32_t geometry_polygon;
+    std::uint32_t precomputation_trapeze;
+    std::uint32_t distribution_span;  ///< a row cuts its span from a trapeze
+    std::uint32_t distribution_pass;
+    CostBasis basis;  ///< of the entries that are not set apart
+
+    CostTable() : CostTable(CostBasis::word) {}
+    explicit CostTable(CostBasis basis);
 
     /// Cycles of an operator, by its method.
     std::uint32_t reciprocal(const OperatorSettings& operators) const;
@@ -73,6 +85,8 @@ struct CostTable {
 
     /// Every entry by name, for --help, the configuration file and overrides.
     static std::vector<std::pair<std::string, std::uint32_t CostTable::*>> entries();
+    /// The entries that are counted from microprograms, of a cell: the others are estimates.
+    static std::vector<std::string> counted();
     /// Sets "name=cycles"; throws std::invalid_argument naming the entry and what was allowed.
     void set(const std::string& assignment);
 };

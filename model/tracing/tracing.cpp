@@ -151,11 +151,11 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
 std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs) {
     const Comparisons& made = visit.comparisons;
     const HitTest test = settings.hit;
-    // Every test ends in a division, for the distance at which the ray meets the plane or enters the run.
+    // Every test has a division, for the distance at which the ray meets the plane or enters the run.
     const std::uint32_t own = test == HitTest::plane  ? costs.compare_plane
                               : test == HitTest::mask ? costs.compare_mask
                               : test == HitTest::edge ? costs.compare_edge
-                                                      : 0;
+                                                      : costs.enter_run;
     const std::uint32_t run = test == HitTest::depth ? costs.compare_depth : costs.compare_interval;
     return costs.walk_step + made.runs * run +
            made.tests * (own + costs.reciprocal(settings.numbers.operators)) + made.edges * costs.per_edge;
@@ -348,9 +348,10 @@ dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t obj
 std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs) {
     const OperatorSettings& operators = context.settings.numbers.operators;
     const std::uint32_t root = costs.root(operators);
-    const std::uint32_t start = 2 * costs.reciprocal(operators);  // the reciprocals that a ray carries
-    std::uint32_t cycles = costs.shade_setup;
-    if (context.settings.normals == Normals::linear) cycles += costs.normal_linear + root;
+    // With the reciprocals that a ray carries.
+    const std::uint32_t start = costs.ray_start + 2 * costs.reciprocal(operators);
+    std::uint32_t cycles = costs.shade_setup + root;  // a voxel's own normal is made unit, too
+    if (context.settings.normals == Normals::linear) cycles += costs.normal_linear;
     cycles += std::uint32_t(context.sources.size()) * (costs.source_view + root);
     if (context.settings.shadows == Shadows::per_hit) {
         cycles += std::uint32_t(std::bitset<64>(setup.facing).count()) * start;

@@ -1,5 +1,5 @@
 // Cycles and rays that the scenarios share. They are written out on purpose, not taken from the model:
-// docs/reference/cell.md has the costs, docs/reference/cell_tb.md the words.
+// docs/reference/cell.md has the costs (those estimated by hand), docs/reference/cell_tb.md the words.
 #pragma once
 
 #include "testbench/cell/script.hpp"

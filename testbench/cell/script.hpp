@@ -10,8 +10,8 @@
 namespace raycell {
 
 /// Scenario of cell (1, 1) in the middle of 3x3: exact arithmetic, a cube 10 deep in 10 levels, the viewer at
-/// infinity, nothing around the cube, otherwise the default machine. The own ray sees the background unless
-/// something is loaded. Events may be added in any order.
+/// infinity, nothing around the cube, otherwise the default machine, with the costs estimated by hand. The
+/// own ray sees the background unless something is loaded. Events may be added in any order.
 class Script {
   public:
     Script(std::string name, std::string says);

@@ -205,6 +205,30 @@ void OptionTable::window(const std::string& name, CycleWindow& target, const std
 }
 
 void OptionTable::costs(CostTable& table) {
+    // Before --cost, which changes single entries of what is set here.
+    const std::vector<std::pair<std::string, CostBasis>> bases = {{"word", CostBasis::word},
+                                                                  {"wide", CostBasis::wide},
+                                                                  {"two", CostBasis::two},
+                                                                  {"estimate", CostBasis::estimate}};
+    const auto choose = [&table, bases](const std::string& word) {
+        for (const auto& [name, basis] : bases) {
+            if (name == word) table = CostTable(basis);
+        }
+    };
+    app_.add_option_function<std::string>("--datapath", choose,
+                                          "whose counted cycles are taken: of one multiplier of words, one "
+                                          "that takes a distance whole, two of "
+                                          "words; or estimates by hand")
+        ->group(group_)
+        ->check(CLI::IsMember({"word", "wide", "two", "estimate"}))
+        ->default_str("word")
+        ->take_last();
+    entries_.push_back({"datapath", [&table, bases] {
+                            for (const auto& [name, basis] : bases) {
+                                if (basis == table.basis) return nlohmann::ordered_json(name);
+                            }
+                            return nlohmann::ordered_json();
+                        }});
     std::string names;
     for (const auto& [name, member] : CostTable::entries()) {
         names += (names.empty() ? "" : ", ") + name + "=" + std::to_string(table.*member);

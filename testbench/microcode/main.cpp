@@ -20,6 +20,7 @@ struct Options {
     std::string datapath;
     std::string listing;
     bool progress = false;
+    bool costs = false;
 };
 
 void add_options(OptionTable& table, Options& o) {
@@ -43,6 +44,10 @@ void add_options(OptionTable& table, Options& o) {
     table.number("runs", o.runs, std::uint64_t(1), std::uint64_t(1) << 40, "random inputs of each program");
     table.number("seed", o.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1, "of the inputs");
     table.text("datapath", o.datapath, "NAME", "word, wide or two alone; empty: all");
+    table.flag(
+        "costs", o.costs,
+        "counts the entries of the cost table instead, at words of 20 bits and 128x128 cells, and prints "
+        "them beside the table");
     table.flag("progress", o.progress, "says on standard error which programs are done");
     table.text("listing", o.listing, "PROGRAM", "prints the instructions of this program, too");
 }
@@ -62,10 +67,10 @@ void try_all(const MicroSetting& setting, const Options& o, bool& listed) {
                       << " inputs\n";
         const MicroProgram& p = trial->program();
         std::cout << "| " << setting.datapath.name << " | " << p.name << " | `" << trial->cost_name()
-                  << "` | " << table_cycles(CostTable(), *trial) << " | " << tally.least << " | "
-                  << one_digit(tally.mean) << " | " << tally.most << " | " << p.registers.size() << " | "
-                  << p.register_bits() << " | " << trial->accumulator_bits() << " | " << p.words() << " | "
-                  << p.memory_bits() << " |\n";
+                  << "` | " << table_cycles(CostTable(CostBasis::estimate), *trial) << " | " << tally.least
+                  << " | " << one_digit(tally.mean) << " | " << tally.most << " | " << p.registers.size()
+                  << " | " << p.register_bits() << " | " << trial->accumulator_bits() << " | " << p.words()
+                  << " | " << p.memory_bits() << " |\n";
     }
     if (o.listing.empty()) return;
     for (const auto& trial : micro_trials(setting)) {
@@ -77,7 +82,31 @@ void try_all(const MicroSetting& setting, const Options& o, bool& listed) {
     }
 }
 
+/// Every counted entry, by datapath: counted, and in the table.
+void print_costs(const Options& o) {
+    const std::vector<std::pair<std::string, CostBasis>> bases = {
+        {"word", CostBasis::word}, {"wide", CostBasis::wide}, {"two", CostBasis::two}};
+    std::vector<std::map<std::string, std::uint32_t>> counts;
+    std::cout << "| entry | estimate |";
+    for (const auto& basis : bases) {
+        counts.push_back(count_costs(basis.first, o.runs, o.seed));
+        std::cout << " " << basis.first << " | in the table |";
+    }
+    std::cout << "\n|---|---|---|---|---|---|---|---|\n";
+    for (const auto& [name, member] : CostTable::entries()) {
+        if (counts[0].count(name) == 0) continue;
+        std::cout << "| `" << name << "` | " << CostTable(CostBasis::estimate).*member << " |";
+        for (std::size_t i = 0; i < bases.size(); ++i)
+            std::cout << " " << counts[i].at(name) << " | " << CostTable(bases[i].second).*member << " |";
+        std::cout << "\n";
+    }
+}
+
 int run(const Options& o) {
+    if (o.costs) {
+        print_costs(o);
+        return exit_done;
+    }
     MicroSetting setting{o.numbers, o.extent, {}};
     const std::vector<Datapath> all = datapaths(o.numbers.word_bits, widest_operand(setting.formats()));
     std::string names;
@@ -94,7 +123,7 @@ int run(const Options& o) {
         std::cout << "- " << d.name << ": " << d.meaning << ", " << d.multipliers << " x (" << d.first_bits
                   << " x " << d.second_bits << " bits)\n";
     }
-    std::cout << "\n| datapath | program | instead of | cycles in the table | least | mean | most | "
+    std::cout << "\n| datapath | program | instead of | cycles, estimated | least | mean | most | "
                  "registers | bits | "
                  "accumulator, bits | instructions | bits of them |\n"
                  "|---|---|---|---|---|---|---|---|---|---|---|---|\n";

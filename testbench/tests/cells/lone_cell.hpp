@@ -3,6 +3,7 @@
 
 #include "../truth/hand_made.hpp"
 #include "elaboration.hpp"
+#include "estimates.hpp"
 
 namespace raycell {
 
@@ -68,7 +69,7 @@ struct LoneCell {
     Scheduler scheduler{"scheduler", sc_core::sc_time(50, sc_core::SC_NS)};
     CellScene scene;
     PictureSettings settings;
-    MachineSettings machine;
+    MachineSettings machine = estimated_machine();
     Picture picture;
     std::unique_ptr<Environment> environment;
     std::unique_ptr<CellModule> cell;

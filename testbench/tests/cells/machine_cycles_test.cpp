@@ -1,6 +1,7 @@
 // Cycle counts of small machines, derived by hand from the cost table and the bits of the messages.
 #include "../truth/hand_made.hpp"
 #include "elaboration.hpp"
+#include "estimates.hpp"
 
 namespace raycell {
 namespace {
@@ -26,7 +27,7 @@ struct Row {
     }
     CellScene scene;
     PictureSettings settings;
-    MachineSettings machine;
+    MachineSettings machine = estimated_machine();
 };
 
 /// Bits of a shadow ray: type 3, place (x and y one word each, z 3 bits more for depths to 8), direction 3

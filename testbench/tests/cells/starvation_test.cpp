@@ -1,5 +1,6 @@
 // A cell alone under an endless stream of passing answers: everything else that wants the same output still
 // gets its turn. The argument in cells/deadlock/deadlock.md relies on this.
+#include "estimates.hpp"
 #include "lone_cell.hpp"
 
 namespace raycell {
@@ -62,7 +63,7 @@ Ray ray_from_south(const dvec3& position, const dvec3& direction) {
 class TimedStarvation : public ::testing::TestWithParam<std::tuple<int, int>> {
   protected:
     MachineSettings machine() const {
-        MachineSettings m;
+        MachineSettings m = estimated_machine();
         m.link_bits = std::get<0>(GetParam());
         m.buffer_depth = std::get<1>(GetParam());
         return m;
@@ -98,7 +99,7 @@ TEST_P(TimedStarvation, RaysThatPassGetTheirTurn) {
 /// uses in every cycle. The ray is tested in cycle `decided`. `older`, if given, is tested in cycle 100 and
 /// waits for the same output.
 Cycle wins_in(const Ray& ray, Cycle decided, const Ray* older = nullptr) {
-    MachineSettings machine;
+    MachineSettings machine = estimated_machine();
     machine.link_bits = 64;  // a verdict takes one cycle
     machine.buffer_depth = 4;
     LoneCell lone(machine, LoneCell::empty(10));
@@ -184,7 +185,7 @@ Message::Kind first_when_it_opens(LoneCell& lone, const std::function<void(Cycle
 }
 
 MachineSettings roomy() {
-    MachineSettings machine;
+    MachineSettings machine = estimated_machine();
     machine.link_bits = 1000;  // every message takes one cycle
     machine.buffer_depth = 1;
     machine.ray_store = 4;

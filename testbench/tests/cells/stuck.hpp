@@ -5,6 +5,7 @@
 #include <set>
 
 #include "elaboration.hpp"
+#include "estimates.hpp"
 
 namespace raycell {
 
@@ -44,7 +45,7 @@ struct Stuck {
         EXPECT_LE(before, timed->environment().scheduler.now());
     }
     PictureSettings settings;
-    MachineSettings machine;
+    MachineSettings machine = estimated_machine();
     std::unique_ptr<PlacedScene> placed;
     std::unique_ptr<Machine> timed;
     RunResult result;

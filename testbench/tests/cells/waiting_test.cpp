@@ -1,5 +1,6 @@
 // Counters of cells: waiting by cause, exact to the cycle, however often a cell is woken.
 #include "cells/meters/observer_list.hpp"
+#include "estimates.hpp"
 #include "lone_cell.hpp"
 #include "testbench/common/ray_watch.hpp"
 
@@ -127,7 +128,7 @@ TEST(CellWaiting, AHitThatFindsTheStoreFullWaitsForASlotEvenWhereThePortIsTaken)
     Source behind;  // behind the wall: hits need a slot all the same
     behind.position = {1.5, 1.5, 9};
     wall.sources.push_back(behind);
-    MachineSettings machine;
+    MachineSettings machine = estimated_machine();
     machine.ray_store = 1;
     machine.recovery = Recovery::none;
     machine.link_bits = 1000;

@@ -2,15 +2,19 @@
 #include <gtest/gtest.h>
 
 #include "../property.hpp"
-#include "testbench/microcode/trials.hpp"
+#include "testbench/microcode/counts.hpp"
 
 namespace raycell {
 namespace {
 
 #ifdef RAYCELL_SANITIZED
 constexpr std::uint64_t inputs = 40;  // of each seed: this build is slow
+constexpr std::uint64_t recounts = 1000;
+constexpr double recount_room = 1;  // cycles: the table is of more inputs
 #else
 constexpr std::uint64_t inputs = 250;
+constexpr std::uint64_t recounts = 20000;
+constexpr double recount_room = 0;
 #endif
 
 class MicrocodeOf : public testing::TestWithParam<int> {};
@@ -117,6 +121,24 @@ TEST(Microcode, AValueThatDoesNotFitItsRegisterIsAnError) {
     Assembler nowhere("nowhere", datapaths(20, 30)[0], Rounding::nearest);
     nowhere.jump("there");
     EXPECT_THROW(nowhere.finish(), std::logic_error);
+}
+
+TEST(Microcode, TheCostTableOfEveryDatapathIsWhatItsProgramsCount) {
+    for (const auto& [name, basis] : {std::pair<const char*, CostBasis>{"word", CostBasis::word},
+                                      {"wide", CostBasis::wide},
+                                      {"two", CostBasis::two}}) {
+        const CostTable table(basis);
+        const auto counts = count_costs(name, recounts, 1);
+        EXPECT_EQ(counts.size(), CostTable::counted().size());
+        for (const auto& [entry, member] : CostTable::entries()) {
+            const auto counted = counts.find(entry);
+            if (counted == counts.end()) {
+                EXPECT_EQ(table.*member, CostTable(CostBasis::estimate).*member) << entry;
+            } else {
+                EXPECT_NEAR(table.*member, counted->second, recount_room) << name << " " << entry;
+            }
+        }
+    }
 }
 
 TEST(Microcode, OfAPowerThatTheModelTakesFromALibraryThereIsNoProgram) {
