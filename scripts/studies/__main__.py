@@ -8,6 +8,7 @@ STUDIES = {
     "deadlock": "studies.deadlock.sweep",
     "time_outs": "studies.time_outs.sweep",
     "sweep": "studies.sweeps.snakemake",
+    "datapaths": "studies.datapaths",
     "ladder": "studies.ladder",
     "figures": "studies.figures",
     "stability": "studies.stability",

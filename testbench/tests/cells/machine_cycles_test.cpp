@@ -111,18 +111,20 @@ struct Loading : Row {
     /// Cycle in which the last cell has taken the end-of-scene mark and loading is complete.
     Cycle expected() const {
         const int columns = 2 * int(std::ceil(std::log2(settings.width)));
-        // Link cycles of 111 bits (type 3, viewer 102, faces 6) and 104 (type 3, features 101).
-        const int setup = 6;
+        // Link cycles of 217 bits (type 3, viewer 103, faces 6, background 60, levels 38, sources 7) and of 104
+        // (type 3, features 101).
+        const int setup = 11;
         // Geometry starts in cycle 1. The set-up is ready in 2 and sent. The features wait for the wires
-        // until 8 and arrive at 14. The polygon, taken up in 9, needs 1 + 40 and leaves in 50. It has type 3,
-        // id 20, plane and slack 147, normals 324 and 4 corners of 3 loading words of 36: 926 bits, 47
-        // cycles.
-        const int polygon_arrives = 2 + setup + 1 + 1 + 40 + 47;
-        EXPECT_EQ(polygon_arrives, 97);
-        // Precomputation 20; a trapeze is 3 + 20 + 432 + 147 + 324 + 435 = 1361 bits, 69 cycles.
-        const int trapeze_arrives = polygon_arrives + 20 + 69;
-        // The row cuts its span in 8 cycles; a span is 3 + 20 + columns + 180 + 147 + 324 + 435 bits.
-        const int span_link = (1109 + columns + 19) / 20;
+        // until 13 and arrive at 19. The polygon, taken up in 14, needs 1 + 40 and leaves in 55. It has type
+        // 3, id 20, plane and slack 147, normals 324, a count of 16 and 4 corners of 3 loading words of 36:
+        // 942 bits, 48 cycles.
+        const int polygon_arrives = 2 + setup + 1 + 1 + 40 + 48;
+        EXPECT_EQ(polygon_arrives, 103);
+        // What its trapezes share leaves a cycle later: 3 + 20 + 147 + 324 = 494 bits, 25 cycles. The trapeze
+        // is ready 20 cycles after that and waits for the wires; it has 3 + columns + 3 + 432 bits.
+        const int trapeze_arrives = polygon_arrives + 1 + 25 + (438 + columns + 19) / 20;
+        // The row cuts its span in 8 cycles; a span is 3 + 20 + columns + 147 + 324 + 435 bits.
+        const int span_link = (929 + columns + 19) / 20;
         const int span_arrives = trapeze_arrives + 8 + span_link;
         // Each cell makes its voxel in 12 cycles and passes the span on; the last one drops it.
         const int span_done = span_arrives + (settings.width - 1) * (12 + span_link) + 12;
