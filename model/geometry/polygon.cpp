@@ -43,23 +43,21 @@ NormalField hold_field(const NormalField& field, const dvec2& anchor, const Form
     return held;
 }
 
-NormalField fill_words(const NormalField& field, const dvec3& middle, double most, double least,
-                       bool* single) {
+NormalField fill_words(const NormalField& field, const dvec3& middle, double most, double least, bool* single,
+                       double elsewhere) {
     const auto size_of = [](const dvec3& v) {
         return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     };
-    const auto scale_of = [&](const NormalField& f) {
-        const double size = std::max({size_of(f.base), size_of(f.du), size_of(f.dv)});
+    const auto scale_of = [&](double size) {
         return size > 0 && std::isfinite(size) ? scale_by(1, exponent_of(most) - 1 - exponent_of(size)) : 1;
     };
-    const auto scaled = [&](const NormalField& f) {
-        const double scale = scale_of(f);
-        return NormalField{scale * f.base, scale * f.du, scale * f.dv};
-    };
     const bool flat = field.du == dvec3(0) && field.dv == dvec3(0);
-    if (flat || scale_of(field) * size_of(middle) >= least) return scaled(field);
+    const double scale =
+        scale_of(std::max({size_of(field.base), size_of(field.du), size_of(field.dv), elsewhere}));
+    if (flat || scale * size_of(middle) >= least)
+        return {scale * field.base, scale * field.du, scale * field.dv};
     if (single) *single = true;
-    return scaled({middle, dvec3(0), dvec3(0)});
+    return {scale_of(size_of(middle)) * middle, dvec3(0), dvec3(0)};
 }
 
 dvec3 newell(const std::vector<dvec3>& vertices) {

@@ -72,9 +72,10 @@ NormalField hold_field(const NormalField& field, const dvec2& anchor, const Form
 /// it is scaled by a power of two until its largest component lies in [most / 2, most). If the field turns so
 /// fast that of `middle`, its value in the middle of its polygon, less than `least` would be left in every
 /// component, words can't tell the polygon from a point: the result is `middle` without gradients, and
-/// `single` is set.
+/// `single` is set. `elsewhere`: the largest component that the field has at other places where words must
+/// hold it.
 NormalField fill_words(const NormalField& field, const dvec3& middle, double most, double least,
-                       bool* single = nullptr);
+                       bool* single = nullptr, double elsewhere = 0);
 
 /// Smallest length of a normal in words of this format: a shorter normal has a direction that is off by more
 /// than 1/64.

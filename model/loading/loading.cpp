@@ -7,6 +7,25 @@ namespace raycell {
 
 namespace {
 
+/// The largest component of the polygon's field of normals at the corners of the cells that it touches. Spans
+/// carry it there, at z = 0.
+double largest_over_cells(const Polygon& polygon) {
+    dvec3 low = polygon.vertices[0];
+    dvec3 high = low;
+    for (const dvec3& v : polygon.vertices) {
+        low = glm::min(low, v);
+        high = glm::max(high, v);
+    }
+    double largest = 0;
+    for (const double x : {std::floor(low.x) - 1, std::floor(high.x) + 1}) {
+        for (const double y : {std::floor(low.y) - 1, std::floor(high.y) + 1}) {
+            const dvec3 normal = glm::abs(polygon.normal.at(project({x, y, 0}, polygon.drop)));
+            largest = std::max({largest, normal.x, normal.y, normal.z});
+        }
+    }
+    return largest;
+}
+
 /// Rounds a polygon to loading words.
 void hold(Polygon& polygon, const Arithmetic& arithmetic) {
     const Format& word = arithmetic.formats().loading;
@@ -19,9 +38,10 @@ void hold(Polygon& polygon, const Arithmetic& arithmetic) {
     polygon.slack = arithmetic.hold(word, polygon.slack * 2 + 4.5 * word.step());
     polygon.plane = hold_plane(polygon.plane, polygon.drop, centre, word, word);
     const dvec2 middle = project(centre, polygon.drop);
-    // Uses an eighth of the range: the field may be larger at another cell than at the origin.
-    const double most = scale_by(1, word.integer_bits() - 4);
-    polygon.normal = fill_words(polygon.normal, polygon.normal.at(middle), most, 1024 * word.step());
+    // Half of the range: rounding adds to what the field is at another cell.
+    const double most = scale_by(1, word.integer_bits() - 2);
+    polygon.normal = fill_words(polygon.normal, polygon.normal.at(middle), most, 1024 * word.step(), nullptr,
+                                largest_over_cells(polygon));
     polygon.normal = hold_field(polygon.normal, middle, word, word);
 }
 

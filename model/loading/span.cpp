@@ -98,7 +98,7 @@ bool keep_covered_centres(Span& span, const Arithmetic& arithmetic) {
         advance(span, arithmetic);
     }
     const Format& word = arithmetic.formats().loading;
-    const dvec3& n = span.plane.n;
+    const dvec3 n = span.plane.n;
     span.z = arithmetic.hold(word, z);
     Span next = span;
     for (span.last = span.x; span.last < last; ++span.last) {
@@ -111,6 +111,9 @@ bool keep_covered_centres(Span& span, const Arithmetic& arithmetic) {
         const dvec2 step = project({1, 0, span.dz}, span.drop);
         span.dn = arithmetic.hold(word, step.x * span.normal.du + step.y * span.normal.dv);
     }
+    // What else cells need of the plane is its slopes; of them no sums are made.
+    span.plane = {arithmetic.hold(arithmetic.formats().unit, n), 0};
+    span.edge_count = 0;
     return true;
 }
 

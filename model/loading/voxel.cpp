@@ -269,11 +269,12 @@ VoxelBits voxel_bits(const PictureSettings& settings, const Formats& formats, st
     const int word = formats.word_bits;
     const int level_bits = bits_for(settings.depth_levels);
     VoxelBits bits;
-    // One depth, one normal: the paper's voxel.
-    bits.base = field::polygon_id + feature_bits(formats) + level_bits + 3 * word;
+    // One depth, one normal, as the paper's voxel; the slopes of its plane, which axis it drops, its sign:
+    // rays start off a surface along it.
+    bits.base =
+        field::polygon_id + feature_bits(formats) + level_bits + 3 * word + 2 * word + field::axis + 1;
     if (settings.hit != HitTest::depth) bits.base += level_bits;
-    // Two slopes and an offset; 3 bits for their axis and its sign.
-    if (settings.hit >= HitTest::plane) bits.base += 3 * word + 3;
+    if (settings.hit >= HitTest::plane) bits.base += word;              // its offset
     if (settings.hit == HitTest::mask) bits.base += 64 + 4 * 5;         // coverage and its window
     if (settings.hit == HitTest::edge) bits.base += field::edge_count;  // how many edges follow
     if (settings.normals == Normals::linear) bits.base += 6 * word;

@@ -89,16 +89,21 @@ void vector(Archive& a, const std::array<const char*, 3>& names, dvec3& v, const
     for (int axis = 0; axis < 3; ++axis) a.word(names[std::size_t(axis)], v[axis], format, meaning);
 }
 
-/// The axis that the plane drops, the sign of its component there (which is 1 or -1), two slopes, an offset.
+/// The axis that the plane drops, the sign of its component there (which is 1 or -1), two slopes.
 template <typename Archive>
-void fields_of_plane(Archive& a, Plane& plane, int& drop, const Format& word) {
+void fields_of_slopes(Archive& a, Plane& plane, int& drop, const Format& word, const char* format) {
     a.number("axis", drop, field::axis, "0 x, 1 y, 2 z: the plane's largest component");
     bool negative = plane.n[drop] < 0;
     a.number("sign", negative, 1, "1: this component is -1, not 1");
     plane.n[drop] = negative ? -1 : 1;
     const Projection axes = projection(drop);
-    a.word("slope u", plane.n[axes.u], word, "loading: component of the normal in u");
-    a.word("slope v", plane.n[axes.v], word, "loading: in v");
+    a.word("slope u", plane.n[axes.u], word, format);
+    a.word("slope v", plane.n[axes.v], word, format);
+}
+
+template <typename Archive>
+void fields_of_plane(Archive& a, Plane& plane, int& drop, const Format& word) {
+    fields_of_slopes(a, plane, drop, word, "loading: component of the normal");
     a.word("offset", plane.c, word, "loading: normal · place of a point on it");
 }
 
@@ -261,11 +266,11 @@ void LoadWire::fields(Archive& a, Span& s) const {
     if (hit_ == HitTest::depth) {
         a.word("Z", s.z, word, "loading: depth at the pixel's centre");
         a.word("DZ", s.dz, word, "loading: its change from cell to cell");
+        fields_of_slopes(a, s.plane, s.drop, formats_.unit, "unit");
         if (normals_ == Normals::voxel) {
             vector(a, {"N x", "N y", "N z"}, s.n, word, "loading: normal there");
             vector(a, {"DN x", "DN y", "DN z"}, s.dn, word, "loading: its change from cell to cell");
         } else {
-            a.number("axis", s.drop, field::axis, "that the plane drops");
             fields_of_normal(a, s.normal, word);
         }
     } else {

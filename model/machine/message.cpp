@@ -40,10 +40,10 @@ void set_loading_bits(MessageBits& bits, const PictureSettings& picture, const F
     bits.edge = 3 * loading;
     if (depth) bits.span_edges = 0;
     bits.span = field::type + field::polygon_id + columns + (gouraud ? 6 * loading : 0);
-    if (depth && picture.normals == Normals::voxel) {
-        bits.span += 2 * loading + 6 * loading;  // Z, DZ, N, DN (paper, section 3.1)
-    } else if (depth) {
-        bits.span += 2 * loading + field::axis + normals;
+    if (depth) {
+        // Z, DZ; slopes, of which no sums are made; N, DN (paper, section 3.1) or a field.
+        bits.span += 2 * loading + field::axis + 1 + 2 * word;
+        bits.span += picture.normals == Normals::voxel ? 6 * loading : normals;
     } else {
         bits.span += plane + loading + normals + field::edges;
     }

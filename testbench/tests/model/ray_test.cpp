@@ -184,12 +184,13 @@ TEST(Messages, HaveTheBitsOfTheirFields) {
     EXPECT_EQ(wider.ray - bits.ray, 9 * 4);
     EXPECT_EQ(wider.verdict, bits.verdict);
     EXPECT_EQ(wider.longest_span() - bits.longest_span(), (4 + 9 + 12) * 4);
-    // Rung `depth` needs neither plane nor edges in a span; with one normal a voxel it is the paper's span.
+    const int slopes = 2 * 20 + 2 + 1;
+    // Rung `depth` needs neither offset nor edges in a span; with one normal a voxel it is the paper's span.
     picture.hit = HitTest::depth;
     EXPECT_EQ(message_bits(picture, machine, formats).longest_span(),
-              3 + 20 + 2 * 7 + 2 * word + 2 + normals);
+              3 + 20 + 2 * 7 + 2 * word + slopes + normals);
     picture.normals = Normals::voxel;
-    EXPECT_EQ(message_bits(picture, machine, formats).longest_span(), 3 + 20 + 2 * 7 + 8 * word);
+    EXPECT_EQ(message_bits(picture, machine, formats).longest_span(), 3 + 20 + 2 * 7 + 8 * word + slopes);
     picture.hit = HitTest::edge;
     picture.normals = Normals::linear;
     // Verdicts on voxels name one of 1024 voxels instead of a slot.

@@ -232,12 +232,12 @@ TEST(Voxels, BitsGrowFromRungToRungAndWithTheWord) {
         return voxel_bits(settings, formats, 2);
     };
     settings.normals = Normals::voxel;
-    // Id; features: six of 12 bits, Shine 12, index of refraction 16, mirror flag; a level of 1024; a normal.
+    // Id; features: six of 12 bits, Shine 12, index of refraction 16, mirror flag; a level of 1024; a normal; two
+    // slopes, two bits for the axis, one for the sign.
     EXPECT_EQ(feature_bits(formats), 6 * 12 + 12 + 16 + 1);
-    EXPECT_EQ(bits(HitTest::depth).base, 20 + 101 + 10 + 60);
+    EXPECT_EQ(bits(HitTest::depth).base, 20 + 101 + 10 + 60 + 2 * 20 + 3);
     EXPECT_EQ(bits(HitTest::interval).base, bits(HitTest::depth).base + 10);
-    // Two slopes and an offset; two bits for the axis, one for the sign.
-    EXPECT_EQ(bits(HitTest::plane).base, bits(HitTest::interval).base + 3 * 20 + 3);
+    EXPECT_EQ(bits(HitTest::plane).base, bits(HitTest::interval).base + 20) << "the offset of its plane";
     // 64 sub-cells; four borders of the window in 32nds. Each needs five bits: 0 to 31, or 1 to 32.
     EXPECT_EQ(bits(HitTest::mask).base, bits(HitTest::plane).base + 64 + 4 * 5);
     EXPECT_EQ(bits(HitTest::edge).base, bits(HitTest::plane).base + 8);
