@@ -60,14 +60,6 @@ void Environment::pack_and_unpack(Answer& answer) {
 
 namespace {
 
-/// What cells latch from the first message.
-ViewerMessage viewer_of(const Context& context) {
-    const Frame& frame = context.scene.frame;
-    return {context.eye,        frame.viewer_at_infinity, context.scene.beyond,
-            context.background, frame.depth_levels,       frame.level(),
-            context.sources};
-}
-
 bool equal(const Material& a, const Material& b) {
     return a.colour == b.colour && a.diffuse == b.diffuse && a.specular == b.specular && a.shine == b.shine &&
            a.transmit == b.transmit && a.ior == b.ior && a.mirror == b.mirror;

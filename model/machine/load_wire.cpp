@@ -5,6 +5,7 @@
 
 #include "model/numbers/bits.hpp"
 #include "model/numbers/field_widths.hpp"
+#include "model/tracing/tracing.hpp"
 
 namespace raycell {
 namespace {
@@ -172,6 +173,13 @@ void fields_of_shine(Archive& a, double& shine, const Formats& formats) {
 }
 
 }  // namespace
+
+ViewerMessage viewer_of(const Context& context) {
+    const Frame& frame = context.scene.frame;
+    return {context.eye,        frame.viewer_at_infinity, context.scene.beyond,
+            context.background, frame.depth_levels,       frame.level(),
+            context.sources};
+}
 
 LoadWire::LoadWire(const PictureSettings& picture, const Formats& formats)
     : formats_(formats),

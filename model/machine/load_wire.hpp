@@ -24,6 +24,10 @@ struct ViewerMessage {
     std::vector<Source> sources;
 };
 
+/// The first message of a scene.
+struct Context;
+ViewerMessage viewer_of(const Context& context);
+
 /// Packs and unpacks the load messages of one machine in words; their layouts follow the rung, the normals
 /// and the display. An object's index is in none of them: its features come before its polygons. What the
 /// trapezes of a polygon share is in the message before them.

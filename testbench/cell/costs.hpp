@@ -30,21 +30,35 @@ constexpr Cycle reflect = 6 + root + 2 * reciprocal;
 constexpr Cycle shade = 6;
 constexpr Cycle load_voxel = 12;
 constexpr Cycle load_forward = 1;
+constexpr Cycle backoff = 64;
+
+/// What a back-off lasts: the shortest, doubled with each attempt, and a jitter below that, which is a hash
+/// of the seed (1), the ray's id and the attempt.
+constexpr Cycle back_off(std::uint64_t ray, unsigned attempt) {
+    const Cycle base = backoff << attempt;
+    std::uint64_t h = 0x9e3779b97f4a7c15 ^ ray * 0xbf58476d1ce4e5b9 ^ attempt * 0x94d049bb133111eb;
+    h = (h ^ h >> 31U) * 0x7fb5d329728ea185;
+    return base + (h ^ h >> 27U) % base;
+}
 
 inline const dvec3 black{0, 0, 0};
 
-/// A ray that cell (0, 1) sent, in the coordinates of cell (1, 1).
+/// The id of all rays of the scripts.
+constexpr std::uint64_t ray_of_script = std::uint64_t(3) << 32U | 7U;
+
+/// A ray that cell (0, 1) sent, in the coordinates of cell (1, 1); the direction is rounded to words.
 inline Ray ray_of(RayKind kind, const dvec3& position, const dvec3& direction) {
     Ray ray;
     ray.kind = kind;
     ray.position = position;
-    set_direction(ray, direction, exact_arithmetic());
+    const Arithmetic& arithmetic = script_arithmetic();
+    set_direction(ray, arithmetic.hold(arithmetic.formats().unit, direction), arithmetic);
     ray.fresh = false;
     ray.home_x = 0;
     ray.home_y = 1;
     ray.slot = 2;
     ray.generation = 1;
-    ray.id = std::uint64_t(3) << 32 | 7;
+    ray.id = ray_of_script;
     return ray;
 }
 
@@ -67,10 +81,12 @@ inline Script empty_cell(const std::string& name, const std::string& says) {
     return script;
 }
 
-constexpr Cycle walled_trace = 20;
+constexpr Cycle walled_trace = 2 + load_voxel + 6;
+/// What the scripts send first: by then the own ray has left.
+constexpr Cycle sent = walled_trace + 4 * (walk + compare) + 8;
 
 /// A cell with a mirror at x = 0.75 that faces west, from z = 2 to 8; the own ray passes beside it. The
-/// mirror is loaded in cycles 1 to 14, the trace begins in cycle 20.
+/// mirror is loaded from cycle 1 on, the trace begins in cycle walled_trace.
 inline Script mirrored_cell(const std::string& name, const std::string& says) {
     Script script(name, says);
     Material mirror;

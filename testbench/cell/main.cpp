@@ -7,11 +7,13 @@
 #include "cells/probes/probe.hpp"
 #include "model/files/input_file.hpp"
 #include "testbench/cell/scenarios.hpp"
+#include "testbench/cell/vectors.hpp"
 #include "testbench/common/configuration.hpp"
 #include "testbench/common/entry.hpp"
 #include "testbench/common/new_file.hpp"
 #include "testbench/common/options.hpp"
 #include "testbench/golden/cell_bench.hpp"
+#include "testbench/golden/traversal.hpp"
 #include "testbench/raycell/commands.hpp"
 
 namespace {
@@ -56,30 +58,27 @@ RenderOptions recorded_options(const GoldenFile& file) {
     return options;
 }
 
-Scenario scenario_of_file(const std::string& path) {
+/// A file of golden vectors, and the cell that it is of.
+struct Record {
+    GoldenFile file;
+    CellSetup setup;
+};
+
+Record record_of_file(const std::string& path) {
     const std::string fault = input_fault(path);
     if (!fault.empty())
         throw UsageError(path + ": " + fault +
                          "; expected golden vectors, as 'raycell render --golden' writes them");
     std::ifstream in(path);
-    GoldenFile file = read_golden(in, path);
-    const RenderOptions options = recorded_options(file);
-    Scenario scenario;
-    scenario.name = path;
-    scenario.setup.picture = options.picture;
-    scenario.setup.machine = options.machine;
-    read_setup(file, scenario.setup);
-    scenario.events = std::move(file.events);
-    scenario.last = file.last;
-    return scenario;
+    Record record{read_golden(in, path), {}};
+    const RenderOptions options = recorded_options(record.file);
+    record.setup.picture = options.picture;
+    record.setup.machine = options.machine;
+    read_setup(record.file, record.setup);
+    return record;
 }
 
 std::vector<Scenario> chosen_scenarios(const Options& options) {
-    if (!options.replay.empty()) {
-        std::vector<Scenario> scenarios;
-        for (const std::string& path : options.replay) scenarios.push_back(scenario_of_file(path));
-        return scenarios;
-    }
     std::vector<Scenario> all = all_scenarios();
     if (options.names.empty()) return all;
     std::vector<Scenario> scenarios;
@@ -120,36 +119,43 @@ class Waveform {
     Scheduler& scheduler_;
 };
 
-/// A scenario as golden vectors: its setup and its events.
-std::string vectors_of(const Scenario& scenario) {
-    RenderOptions options;
-    CLI::App app{"configuration"};
-    OptionTable table(app);
-    add_scene_options(table, options);
-    add_machine_options(table, options);
-    options.picture = scenario.setup.picture;
-    options.machine = scenario.setup.machine;
-    const Context context(scenario.setup.scene, scenario.setup.picture);
-    std::string text = setup_text(scenario.setup, context, to_toml(table.values()));
-    for (const GoldenEvent& event : scenario.events) text += text_of(event) + "\n";
-    return text + std::to_string(scenario.last) + " end\n";
+/// What is to be run: scenarios and records of cells, or records of traversal units.
+struct Chosen {
+    std::vector<Scenario> scenarios;
+    std::vector<Record> traversals;
+};
+
+Chosen recorded(const Options& options) {
+    Chosen chosen;
+    for (const std::string& path : options.replay) {
+        Record record = record_of_file(path);
+        if (record.file.traversal) {
+            chosen.traversals.push_back(std::move(record));
+        } else {
+            chosen.scenarios.push_back(
+                {path, "", std::move(record.setup), std::move(record.file.events), record.file.last});
+        }
+    }
+    return chosen;
 }
 
-void check(const Options& options, std::size_t scenarios) {
+void check(const Options& options, std::size_t scenarios, std::size_t traversals) {
     if (!options.replay.empty() && (!options.names.empty() || options.list || !options.write.empty()))
         throw UsageError("--replay: expected no scenario, --list or --write beside it");
-    if (scenarios != 1 && !options.vcd.empty())
+    if ((scenarios != 1 || traversals > 0) && !options.vcd.empty())
         throw UsageError("--vcd: it shows one cell; expected one scenario or one file to replay");
-    if (scenarios != 1 && !options.write.empty()) throw UsageError("--write: expected one scenario");
+    if (scenarios != 1 && !options.write.empty() && !is_folder(options.write))
+        throw UsageError(
+            "--write: several scenarios go into a folder; expected one, or a name that ends in /");
     const std::string& vcd = options.vcd;
     if (!vcd.empty() && (vcd.size() < 5 || vcd.substr(vcd.size() - 4) != vcd_suffix))
         throw UsageError("--vcd: '" + printable(vcd) + "': expected a name that ends in .vcd");
 }
 
 /// Announces the files to be written. Throws UsageError if one would overwrite a file to be replayed.
-void announce(const Options& options, OutputSet& outputs) {
+void announce(const Options& options, const std::vector<Scenario>& scenarios, OutputSet& outputs) {
     if (!options.write.empty()) {
-        outputs.announce({""});
+        outputs.announce(vector_suffixes(scenarios, options.write));
     } else if (!options.vcd.empty()) {
         outputs.announce({vcd_suffix, ".gtkw"});
     }
@@ -162,7 +168,26 @@ void announce(const Options& options, OutputSet& outputs) {
     }
 }
 
-int run_all(const Options& options, const std::vector<Scenario>& scenarios, OutputSet& outputs) {
+/// Says how one scenario or file went.
+void say(const Options& options, const std::string& name, const std::vector<std::string>& failures,
+         const std::string& more) {
+    if (!options.quiet) std::cout << (failures.empty() ? "passed  " : "FAILED  ") << name << more << '\n';
+    for (const std::string& failure : failures) std::cerr << name << ": " << failure << '\n';
+}
+
+/// Returns how many failed.
+std::size_t run_traversals(const Options& options, const std::vector<Record>& records) {
+    std::size_t failed = 0;
+    for (const Record& record : records) {
+        const TraversalReplay replay = replay_traversal(record.file, record.setup);
+        failed += !replay.failures.empty();
+        say(options, record.file.name, replay.failures, "; " + std::to_string(replay.tests) + " tests");
+    }
+    return failed;
+}
+
+/// Returns how many failed.
+std::size_t run_cells(const Options& options, const std::vector<Scenario>& scenarios, OutputSet& outputs) {
     std::vector<std::unique_ptr<CellBench>> benches;  // all before the first run: SystemC elaborates once
     for (const Scenario& scenario : scenarios) {
         const std::string name = "bench_" + std::to_string(benches.size());
@@ -175,36 +200,37 @@ int run_all(const Options& options, const std::vector<Scenario>& scenarios, Outp
     for (std::size_t i = 0; i < benches.size(); ++i) {
         const std::vector<std::string> failures = benches[i]->run();
         failed += !failures.empty();
-        if (!options.quiet) {
-            std::cout << (failures.empty() ? "passed  " : "FAILED  ") << scenarios[i].name;
-            if (!scenarios[i].says.empty()) std::cout << ": " << scenarios[i].says;
-            std::cout << "; " << benches[i]->matched() << " events to cycle "
-                      << benches[i]->environment().scheduler.now() << '\n';
-        }
-        for (const std::string& failure : failures) std::cerr << scenarios[i].name << ": " << failure << '\n';
+        const std::string& says = scenarios[i].says;
+        say(options, scenarios[i].name, failures,
+            (says.empty() ? "" : ": " + says) + "; " + std::to_string(benches[i]->matched()) +
+                " events to cycle " + std::to_string(benches[i]->environment().scheduler.now()));
     }
     if (waveform) waveform->finish();
-    if (!options.quiet) std::cout << benches.size() - failed << " of " << benches.size() << " passed\n";
-    return failed ? exit_differs : exit_done;
+    return failed;
 }
 
 int run(const Options& options) {
-    const std::vector<Scenario> scenarios = chosen_scenarios(options);
-    check(options, scenarios.size());
+    const Chosen chosen = options.replay.empty() ? Chosen{chosen_scenarios(options), {}} : recorded(options);
+    const std::vector<Scenario>& scenarios = chosen.scenarios;
+    check(options, scenarios.size(), chosen.traversals.size());
     if (options.list) {
         for (const Scenario& scenario : scenarios)
             std::cout << scenario.name << ": " << scenario.says << '\n';
         return exit_done;
     }
     const std::string& vcd = options.vcd;
-    OutputSet outputs(options.write.empty() ? vcd.substr(0, vcd.rfind('.')) : options.write);
-    announce(options, outputs);
+    OutputSet outputs(options.write.empty() ? vcd.substr(0, vcd.rfind('.')) : vector_prefix(options.write));
+    announce(options, scenarios, outputs);
     if (!options.write.empty()) {
-        outputs.write("", vectors_of(scenarios.front()));
+        write_vectors(scenarios, options.write, outputs);
         outputs.publish();
         return exit_done;
     }
-    return run_all(options, scenarios, outputs);
+    const std::size_t failed =
+        run_cells(options, scenarios, outputs) + run_traversals(options, chosen.traversals);
+    const std::size_t all = scenarios.size() + chosen.traversals.size();
+    if (!options.quiet) std::cout << all - failed << " of " << all << " passed\n";
+    return failed ? exit_differs : exit_done;
 }
 
 int run(int argc, char** argv) {
@@ -220,8 +246,11 @@ int run(int argc, char** argv) {
     app.add_option("--vcd", options.vcd,
                    "waveforms of the cell, of one scenario or file; FILE.gtkw beside it")
         ->type_name("FILE.vcd");
-    app.add_option("--write", options.write, "write one scenario as golden vectors instead of running it")
-        ->type_name("FILE");
+    app.add_option(
+           "--write", options.write,
+           "write a scenario as golden vectors instead of running it; several, or all, into a folder: a name "
+           "that ends in /")
+        ->type_name("FILE|FOLDER/");
     app.add_flag("--quiet", options.quiet, "print nothing but failures");
     return parse_and_run(app, {argv + 1, argv + argc}, [&] { return run(options); });
 }

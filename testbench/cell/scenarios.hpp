@@ -24,5 +24,6 @@ std::vector<Scenario> loading_scenarios();
 std::vector<Scenario> routing_scenarios();
 std::vector<Scenario> hit_scenarios();
 std::vector<Scenario> waiting_scenarios();
+std::vector<Scenario> turn_scenarios();
 
 }  // namespace raycell

@@ -9,9 +9,12 @@
 
 namespace raycell {
 
-/// Scenario of cell (1, 1) in the middle of 3x3: exact arithmetic, a cube 10 deep in 10 levels, the viewer at
-/// infinity, nothing around the cube, otherwise the default machine, with the costs estimated by hand. The
-/// own ray sees the background unless something is loaded. Events may be added in any order.
+/// The words of all scenarios.
+const Arithmetic& script_arithmetic();
+
+/// Scenario of cell (1, 1) in the middle of 3x3: a cube 10 deep in 10 levels, the viewer at infinity, nothing
+/// around the cube, otherwise the default machine, with the costs estimated by hand. The own ray sees the
+/// background unless something is loaded. Events may be added in any order.
 class Script {
   public:
     Script(std::string name, std::string says);
@@ -25,7 +28,7 @@ class Script {
     Script& free(Cycle cycle, Side towards, int index);
     Script& trace(Cycle first);
 
-    // What it has to do. The branch of a ray or an answer is not compared: only the model has it.
+    // What it has to do.
     Script& take(Cycle cycle, Side from, int index);
     Script& out(Cycle cycle, Side towards, int index, int cycles, const Ray& ray);
     Script& out(Cycle cycle, Side towards, int index, int cycles, const Answer& answer);
@@ -38,9 +41,8 @@ class Script {
   private:
     Script& add(GoldenEvent::What what, Cycle cycle, Side side, int index, int cycles,
                 const std::string& text);
-    std::string text(Message message) const;
+    Script& add(GoldenEvent::What what, Cycle cycle, Side side, int index, int cycles, Message message);
     Scenario scenario_;
-    Arithmetic arithmetic_;
 };
 
 /// The span of a rectangle corner, corner + u, corner + u + v, corner + v (array coordinates) in row y, as it

@@ -460,6 +460,10 @@ void add_probe_options(OptionTable& table, RenderOptions& options) {
     table.cells("golden", options.golden,
                 "messages into and out of these cells, for cell_tb and the test of a cell of your own: "
                 "PREFIX.golden_X_Y.txt; may come several times");
+    table.choice("golden-part", options.golden_part,
+                 {{"cell", GoldenPart::cell}, {"traversal", GoldenPart::traversal}},
+                 "what --golden records: all messages, or the traversal unit's tests alone, with the cell's "
+                 "voxels: PREFIX.traversal_X_Y.txt");
 }
 
 void add_render_options(OptionTable& table, RenderOptions& options) {

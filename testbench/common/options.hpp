@@ -98,6 +98,9 @@ enum class Hosts {
     tile        ///< tiles, but modules for the cells of --detail
 };
 
+/// What --golden records: all that a cell is told and does, or the tests of its traversal unit alone.
+enum class GoldenPart { cell, traversal };
+
 struct RenderOptions {
     std::string scene;
     std::string prefix = "out";
@@ -113,13 +116,14 @@ struct RenderOptions {
     std::vector<std::uint64_t> watch_rays;
     std::vector<CellRange> watch_pixels;
     ProbeOptions probes;
-    int film = 0;       ///< frames of the film; 0: none
-    bool rays = false;  ///< a table of all rays
+    int film = 0;                   ///< frames of the film; 0: none
+    bool rays = false;              ///< a table of all rays
     std::string save_array;         ///< file for the loaded array; empty: none
     std::string config;             ///< file of options; empty: none
     std::string load_array;         ///< file of a loaded array to start with; empty: none
     std::vector<CellRange> golden;  ///< cells whose messages are written
-    std::vector<int> rank_rows;     ///< first rows of the bands after the first; empty: even bands
+    GoldenPart golden_part = GoldenPart::cell;
+    std::vector<int> rank_rows;  ///< first rows of the bands after the first; empty: even bands
 };
 
 /// The scene, the view, the size of the array.

@@ -23,20 +23,15 @@ CellBench::CellBench(sc_core::sc_module_name name, const CellSetup& setup, std::
       picture_(setup.scene.frame.width, setup.scene.frame.height),
       environment_(setup_.scene, setup_.picture, setup_.machine, scheduler_, picture_),
       module_("cell", environment_, setup.x, setup.y),
-      words_(environment_.context.arithmetic),
+      words_(environment_.context.arithmetic, setup_.picture),
+      packing_(environment_.context, setup_.machine),
       last_(last) {
     SC_METHOD(drive);
     sensitive << wake_;
     dont_initialize();
     make_links();
     for (GoldenEvent& event : events) {
-        const bool buffer = event.what == GoldenEvent::What::in || event.what == GoldenEvent::What::out ||
-                            event.what == GoldenEvent::What::take || event.what == GoldenEvent::What::free;
-        const bool load = event.side == GoldenEvent::load_link;
-        if (buffer && ((load ? !load_ : !setup_.linked[std::size_t(event.side)]) ||
-                       event.index >= (load ? 1 : environment_.classes.count)))
-            throw GoldenError("'" + text_of(event).substr(0, 80) + "'" + line_of(event) +
-                              ": the cell has no such buffer");
+        check(event);
         if (event.what == GoldenEvent::What::pixel) {
             pixels_.push_back(std::move(event));
         } else if (event.expected()) {
@@ -48,6 +43,36 @@ CellBench::CellBench(sc_core::sc_module_name name, const CellSetup& setup, std::
     }
     scheduler_.set_limit(last);
     scheduler_.set_watch(&CellBench::begin_cycle, this);
+}
+
+/// Throws GoldenError, naming the line, for an event that can't be of this cell.
+void CellBench::check(const GoldenEvent& event) {
+    const auto fail = [&](const std::string& what) {
+        throw GoldenError("'" + text_of(event).substr(0, 80) + "'" + line_of(event) + ": " + what);
+    };
+    const bool message = event.what == GoldenEvent::What::in || event.what == GoldenEvent::What::out;
+    const bool buffer =
+        message || event.what == GoldenEvent::What::take || event.what == GoldenEvent::What::free;
+    if (!buffer) return;
+    const bool load = event.side == GoldenEvent::load_link;
+    if ((load ? !load_ : !setup_.linked[std::size_t(event.side)]) ||
+        event.index >= (load ? 1 : environment_.classes.count))
+        fail("the cell has no such buffer");
+    if (!message) return;
+    std::string wrong;
+    try {
+        const Message read = message_of(event);
+        wrong = packing_.objection(read, event.bits);
+        give_back(read, environment_.pools);
+    } catch (const GoldenError& error) {
+        wrong = error.what();
+    }
+    if (!wrong.empty()) fail(wrong);
+}
+
+Message CellBench::message_of(const GoldenEvent& event) {
+    const KindRules rules{setup_.picture.shadows, environment_.phase == Phase::precast};
+    return read_message(words_, event.tokens, event.remarks, rules, environment_.pools);
 }
 
 void CellBench::make_links() {
@@ -145,7 +170,7 @@ void CellBench::send(const GoldenEvent& event) {
     }
     Message message;
     try {
-        message = read_message(words_, event.tokens, environment_.pools);
+        message = message_of(event);
     } catch (const GoldenError& error) {
         report(event, error.what());
         return;
@@ -168,9 +193,7 @@ void CellBench::free(const GoldenEvent& event) {
         return;
     }
     link.pop(event.index);
-    if (message.kind == Message::Kind::ray) environment_.pools.rays.give_back(message.ray);
-    if (message.kind == Message::Kind::answer) environment_.pools.answers.give_back(message.answer);
-    if (message.kind == Message::Kind::load) environment_.pools.loads.give_back(message.load);
+    give_back(message, environment_.pools);
 }
 
 /// Why a message must not be sent to the cell, because it refers to something that does not exist; else
@@ -241,7 +264,11 @@ void CellBench::report(const GoldenEvent& event, const std::string& what) {
 void CellBench::sent(const Link& link, int index, const Message& message, int cycles, Cycle now) {
     for (int side = 0; side < side_count; ++side) {
         if (out_[std::size_t(side)].get() != &link) continue;
-        compare({GoldenEvent::What::out, now, side, index, cycles, tokens_of(text_of(words_, message)), 0});
+        GoldenEvent event{
+            GoldenEvent::What::out, now, side, index, cycles, tokens_of(text_of(words_, message)), 0};
+        event.bits = packing_.packed(message);
+        event.remarks = tokens_of(remarks_of(message));
+        compare(event);
     }
 }
 
@@ -276,19 +303,12 @@ std::string CellBench::difference(const GoldenEvent& is, const GoldenEvent& expe
     if (is.cycles != expected.cycles)
         return where + "takes " + std::to_string(is.cycles) + " cycles over the link, expected " +
                std::to_string(expected.cycles);
-    if (is.tokens.size() != expected.tokens.size() ||
-        (!is.tokens.empty() && is.tokens[0] != expected.tokens[0])) {
-        GoldenEvent other = expected;
-        return where + "expected: " + text_of(other);
-    }
-    const std::vector<std::string> names =
-        is.tokens.empty() ? std::vector<std::string>() : field_names(is.tokens);
-    for (std::size_t i = 1; i < is.tokens.size(); ++i) {
-        if (expected.tokens[i] == "*" || expected.tokens[i] == is.tokens[i]) continue;
-        const std::string name = i - 1 < names.size() ? names[i - 1] : "number " + std::to_string(i);
-        return where + "field '" + name + "' is " + is.tokens[i] + ", expected " + expected.tokens[i];
-    }
-    return "";
+    const bool packed = !is.bits.empty() && !expected.bits.empty();
+    // An object's number is in no bits, but which features come next is told by it.
+    const bool numbered = !is.tokens.empty() && is.tokens[0] == "features" && is.tokens != expected.tokens;
+    if (packed ? is.bits == expected.bits && !numbered : is.tokens == expected.tokens) return "";
+    const std::string field = raycell::difference(words_, is.tokens, expected.tokens);
+    return where + (field.empty() ? "expected: " + text_of(expected) : field);
 }
 
 void CellBench::compare_pixel() {

@@ -10,18 +10,20 @@
 
 #include "cells/hosts/cell_module.hpp"
 #include "testbench/golden/file.hpp"
+#include "testbench/golden/packing.hpp"
 
 namespace raycell {
 
 /// A cell with links on its sides, as in an array. The driver applies the events that the cell is told, in
 /// their cycles. Whatever the cell sends (out) or takes from a buffer (take) must be the next expected event
-/// of that buffer, in the same cycle, token for token; a token "*" matches anything. Build all benches of a
-/// process before the first run.
+/// of that buffer, in the same cycle, with the same bits (or, where there are none, the same words). Build
+/// all benches of a process before the first run.
 class CellBench : public sc_core::sc_module, public Client, private LinkObserver {
   public:
     SC_HAS_PROCESS(CellBench);
     /// `events` in the order of their cycles; nothing runs after cycle `last`. Throws GoldenError for events
-    /// of buffers that the cell does not have.
+    /// of buffers that the cell does not have, for what is no message, and for a message whose bits and words
+    /// differ.
     CellBench(sc_core::sc_module_name name, const CellSetup& setup, std::vector<GoldenEvent> events,
               Cycle last);
 
@@ -55,6 +57,8 @@ class CellBench : public sc_core::sc_module, public Client, private LinkObserver
     void report(const GoldenEvent& event, const std::string& what);
     void schedule_next();
     void make_links();
+    void check(const GoldenEvent& event);
+    Message message_of(const GoldenEvent& event);
 
     CellSetup setup_;
     Scheduler scheduler_;
@@ -62,6 +66,7 @@ class CellBench : public sc_core::sc_module, public Client, private LinkObserver
     Environment environment_;
     CellModule module_;
     Words words_;
+    Packing packing_;
     std::array<std::unique_ptr<Link>, side_count> in_;
     std::array<std::unique_ptr<Link>, side_count> out_;
     std::unique_ptr<Link> load_;

@@ -7,7 +7,6 @@
 namespace raycell {
 namespace {
 
-constexpr const char* first_line = "raycell-golden 1";
 constexpr std::array<const char*, 7> whats{"in", "free", "phase", "drain", "out", "take", "pixel"};
 constexpr std::array<const char*, 5> sides{"east", "south", "west", "north", "load"};
 constexpr Cycle most_cycles = Cycle(1) << 48;
@@ -17,14 +16,26 @@ constexpr Cycle most_cycles = Cycle(1) << 48;
     throw GoldenError(name + ":" + std::to_string(line) + ": " + what);
 }
 
+/// Throws GoldenError unless a record's first line is this version's.
+void check_version(const std::string& name, const std::string& line) {
+    if (line == golden_version) return;
+    const std::string kind = "raycell-golden ";
+    if (line.rfind(kind, 0) != 0) fail(name, 1, std::string("expected '") + golden_version + "'");
+    fail(name, 1,
+         "golden vectors of version '" + line.substr(kind.size(), 20) + "': expected '" + golden_version +
+             "'; record them anew with 'raycell render --golden' or 'cell_tb SCENARIO --write'");
+}
+
 class EventReader {
   public:
-    EventReader(const std::string& name, int line, const std::vector<std::string>& tokens)
-        : name_(name), line_(line), tokens_(tokens) {}
+    EventReader(const std::string& name, int line, const std::vector<std::string>& tokens,
+                std::vector<std::string> remarks = {})
+        : name_(name), line_(line), tokens_(tokens), remarks_(std::move(remarks)) {}
 
     GoldenEvent read() {
         GoldenEvent event;
         event.line = line_;
+        event.remarks = remarks_;
         event.cycle = number("a cycle", most_cycles);
         event.what = GoldenEvent::What(word(whats, "what happens"));
         switch (event.what) {
@@ -33,6 +44,8 @@ class EventReader {
                 read_buffer(event);
                 event.cycles = int(number("cycles on the link", 1000000000));
                 if (event.cycles == 0) refuse("cycles on the link", "0", "at least 1");
+                event.bits = next("bits");
+                if (event.bits == no_bits) event.bits.clear();
                 read_rest(event, 1, 1000);
                 break;
             case GoldenEvent::What::free:
@@ -95,7 +108,72 @@ class EventReader {
     const std::string& name_;
     int line_;
     const std::vector<std::string>& tokens_;
+    std::vector<std::string> remarks_;
     std::size_t at_ = 0;
+};
+
+/// Reads a file line by line.
+class FileReader {
+  public:
+    explicit FileReader(const std::string& name) { file_.name = name; }
+
+    void line(std::string text) {
+        ++number_;
+        if (!text.empty() && text.back() == '\r') text.pop_back();
+        if (number_ == 1) return check_version(file_.name, text);
+        if (text.rfind("config ", 0) == 0 && !begun_) {
+            file_.configuration += text.substr(7) + "\n";
+            return;
+        }
+        const auto mark = std::min(text.find(remark_mark), text.size());
+        GoldenFile::Line line{number_, tokens_of(text.substr(0, mark))};
+        if (mark < text.size()) line.remarks = tokens_of(text.substr(mark + 1));
+        if (line.tokens.empty() || line.tokens[0][0] == '#') return;
+        if (ended_) fail(file_.name, number_, "expected nothing behind 'end'");
+        if (begun_) {
+            behind_head(std::move(line));
+        } else if (line.tokens[0] == "begin") {
+            begun_ = true;
+        } else if (text.substr(0, mark) == traversal_part) {
+            file_.traversal = true;
+        } else {
+            file_.head.push_back(std::move(line));
+        }
+    }
+
+    GoldenFile finish() {
+        if (number_ == 0) check_version(file_.name, "");
+        if (!ended_) fail(file_.name, number_, "expected 'CYCLE end': the record is not whole");
+        if (before_ > file_.last) fail(file_.name, number_, "the record ends before its last event");
+        return std::move(file_);
+    }
+
+  private:
+    void behind_head(GoldenFile::Line line) {
+        if (line.tokens.size() == 2 && line.tokens[1] == "end") {
+            file_.last = EventReader(file_.name, number_, {line.tokens[0], "drain", "0"}).read().cycle;
+            ended_ = true;
+        } else if (file_.traversal) {
+            file_.lines.push_back(std::move(line));
+        } else {
+            file_.events.push_back(EventReader(file_.name, number_, line.tokens, line.remarks).read());
+            check_order(file_.events.back());
+        }
+    }
+    void check_order(const GoldenEvent& event) {
+        if (event.what == GoldenEvent::What::pixel) return;  // written after the run, so out of order
+        if (event.cycle < before_)
+            fail(file_.name, number_,
+                 "cycle " + std::to_string(event.cycle) + " comes after cycle " + std::to_string(before_) +
+                     "; expected them in order");
+        before_ = event.cycle;
+    }
+
+    GoldenFile file_;
+    int number_ = 0;
+    bool begun_ = false;
+    bool ended_ = false;
+    Cycle before_ = 0;
 };
 
 }  // namespace
@@ -107,55 +185,18 @@ std::string text_of(const GoldenEvent& event) {
     using What = GoldenEvent::What;
     const bool buffer = event.what != What::phase && event.what != What::drain && event.what != What::pixel;
     if (buffer) text += std::string(" ") + name_of_side(event.side) + " " + std::to_string(event.index);
-    if (event.what == What::in || event.what == What::out) text += " " + std::to_string(event.cycles);
+    if (event.what == What::in || event.what == What::out)
+        text += " " + std::to_string(event.cycles) + " " + (event.bits.empty() ? no_bits : event.bits);
     for (const std::string& token : event.tokens) text += " " + token;
+    if (!event.remarks.empty()) text += std::string(" ") + remark_mark;
+    for (const std::string& remark : event.remarks) text += " " + remark;
     return text;
 }
 
 GoldenFile read_golden(std::istream& in, const std::string& name) {
-    GoldenFile file;
-    file.name = name;
-    std::string line;
-    int number = 0;
-    bool begun = false;
-    bool ended = false;
-    Cycle before = 0;
-    while (std::getline(in, line)) {
-        ++number;
-        if (!line.empty() && line.back() == '\r') line.pop_back();
-        if (number == 1) {
-            if (line != first_line) fail(name, number, std::string("expected '") + first_line + "'");
-            continue;
-        }
-        if (line.rfind("config ", 0) == 0 && !begun) {
-            file.configuration += line.substr(7) + "\n";
-            continue;
-        }
-        const std::vector<std::string> tokens = tokens_of(line);
-        if (tokens.empty() || tokens[0][0] == '#') continue;
-        if (ended) fail(name, number, "expected nothing behind 'end'");
-        if (!begun) {
-            begun = tokens[0] == "begin";
-            if (!begun) file.head.push_back({number, tokens});
-        } else if (tokens.size() == 2 && tokens[1] == "end") {
-            const GoldenEvent end = EventReader(name, number, {tokens[0], "drain", "0"}).read();
-            file.last = end.cycle;
-            ended = true;
-        } else {
-            file.events.push_back(EventReader(name, number, tokens).read());
-            const GoldenEvent& event = file.events.back();
-            if (event.what == GoldenEvent::What::pixel) continue;  // written after the run, so out of order
-            if (event.cycle < before)
-                fail(name, number,
-                     "cycle " + tokens[0] + " comes after cycle " + std::to_string(before) +
-                         "; expected them in order");
-            before = event.cycle;
-        }
-    }
-    if (number == 0) fail(name, 1, std::string("expected '") + first_line + "'");
-    if (!ended) fail(name, number, "expected 'CYCLE end': the record is not whole");
-    if (before > file.last) fail(name, number, "the record ends before its last event");
-    return file;
+    FileReader reader(name);
+    for (std::string line; std::getline(in, line);) reader.line(line);
+    return reader.finish();
 }
 
 }  // namespace raycell

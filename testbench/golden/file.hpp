@@ -22,12 +22,15 @@ struct GoldenEvent {
     int index = 0;   ///< buffer class
     int cycles = 0;  ///< in, out: cycles that the message takes on the link
     std::vector<std::string>
-        tokens;    ///< the message; for a pixel its colour, for a phase its name, for drain 0 or 1
-    int line = 0;  ///< line of the file; 0: none
+        tokens;             ///< the message; for a pixel its colour, for a phase its name, for drain 0 or 1
+    int line = 0;           ///< line of the file; 0: none
+    std::string bits = {};  ///< the message's, hexadecimal; empty: none
+    int bit_count = 0;      ///< of `bits`, where a message was packed; 0: as read from a file
+    std::vector<std::string> remarks = {};  ///< what the wires do not carry
     bool expected() const { return what >= What::out; }
 };
 
-/// "1234 out east 0 13 ray ...".
+/// "1234 out east 0 13 BITS ray ... ; REMARKS".
 std::string text_of(const GoldenEvent& event);
 const char* name_of_side(int side);
 
@@ -39,10 +42,20 @@ struct CellSetup {
     int x = 0;
     int y = 0;
     std::array<bool, side_count> linked{};  ///< sides with links, to a neighbour or to the exterior
+    bool traversal = false;                 ///< of the traversal unit alone
 };
 
-/// The setup as lines, after those of the configuration (TOML). `context` must have the same settings and
-/// scene.
+/// A head with this first line is read; no other version is.
+constexpr const char* golden_version = "raycell-golden 2";
+/// The line of the head that tells vectors of the traversal unit from those of a cell.
+constexpr const char* traversal_part = "part traversal";
+/// Stands where a message has no bits.
+constexpr const char* no_bits = "-";
+/// What stands behind it is a remark.
+constexpr char remark_mark = ';';
+
+/// The setup as lines, after those of the configuration (TOML). `context` must have the same picture settings
+/// and scene.
 std::string setup_text(const CellSetup& setup, const Context& context, const std::string& configuration);
 
 struct GoldenFile {
@@ -51,9 +64,12 @@ struct GoldenFile {
     struct Line {
         int number = 0;
         std::vector<std::string> tokens;
+        std::vector<std::string> remarks = {};
     };
     std::vector<Line> head;  ///< lines that read_setup() has to read
+    bool traversal = false;  ///< of the traversal unit alone: `lines`; else of a cell: `events`
     std::vector<GoldenEvent> events;
+    std::vector<Line> lines;
     Cycle last = 0;  ///< cycle in which the record ends
 };
 

@@ -8,7 +8,9 @@ GoldenRecorder::GoldenRecorder(sc_core::sc_module_name name, Machine& machine, s
                                std::string configuration)
     : sc_module(name),
       machine_(machine),
-      words_(machine.environment().context.arithmetic),
+      words_(machine.environment().context.arithmetic, machine.environment().settings),
+      packing_(machine.environment().context, machine.environment().machine),
+      memory_(words_.formats(), packing_.widest()),
       targets_(std::move(targets)),
       configuration_(std::move(configuration)) {}
 
@@ -23,6 +25,7 @@ void GoldenRecorder::attach(std::size_t target) {
     CellSetup setup;
     setup.x = cell.x();
     setup.y = cell.y();
+    setup.machine = env.machine;
     for (int side = 0; side < side_count; ++side) {
         Link* in = cell.input(Side(side));
         setup.linked[std::size_t(side)] = in;
@@ -33,6 +36,9 @@ void GoldenRecorder::attach(std::size_t target) {
     Link* load = cell.load_input();
     if (load && load != cell.input(Side::west)) watch(*load, {target, true, GoldenEvent::load_link});
     std::fputs(setup_text(setup, env.context, configuration_).c_str(), targets_[target].file);
+    for (std::FILE* memory : {targets_[target].memory_in, targets_[target].memory_out}) {
+        if (memory) std::fputs(memory_.first_line().c_str(), memory);
+    }
 }
 
 void GoldenRecorder::watch(Link& link, const Role& role) {
@@ -42,13 +48,23 @@ void GoldenRecorder::watch(Link& link, const Role& role) {
 }
 
 void GoldenRecorder::write(std::size_t target, const GoldenEvent& event) {
-    std::fputs((text_of(event) + "\n").c_str(), targets_[target].file);
+    const Target& files = targets_[target];
+    std::fputs((text_of(event) + "\n").c_str(), files.file);
+    std::FILE* memory = event.expected() ? files.memory_out : files.memory_in;
+    if (memory) std::fputs(memory_.line(event).c_str(), memory);
 }
 
 void GoldenRecorder::sent(const Link& link, int index, const Message& message, int cycles, Cycle now) {
     for (const Role& role : roles_.at(&link)) {
         const auto what = role.incoming ? GoldenEvent::What::in : GoldenEvent::What::out;
-        write(role.target, {what, now, role.side, index, cycles, {text_of(words_, message)}, 0});
+        GoldenEvent event{what, now, role.side, index, cycles, {text_of(words_, message)}, 0};
+        if (const auto bits = packing_.bits_of(message)) {
+            event.bits = bits->hex();
+            event.bit_count = bits->size();
+        }
+        const std::string remarks = remarks_of(message);
+        if (!remarks.empty()) event.remarks = {remarks};
+        write(role.target, event);
     }
 }
 
@@ -80,9 +96,13 @@ void GoldenRecorder::finish() {
             GoldenEvent event{GoldenEvent::What::pixel, env.phase_start + pixel.cycle, 0, 0, 0, {}, 0};
             for (int channel = 0; channel < 3; ++channel)
                 event.tokens.push_back(words_.word(words_.formats().intensity, pixel.colour[channel]));
-            std::fprintf(targets_[i].file, "%s\n", text_of(event).c_str());
+            write(i, event);
         }
-        std::fprintf(targets_[i].file, "%llu end\n", static_cast<unsigned long long>(env.scheduler.now()));
+        const Cycle last = env.scheduler.now();
+        std::fprintf(targets_[i].file, "%llu end\n", static_cast<unsigned long long>(last));
+        for (std::FILE* memory : {targets_[i].memory_in, targets_[i].memory_out}) {
+            if (memory) std::fputs(memory_.last_line(last).c_str(), memory);
+        }
     }
     for (Link* link : links_) link->set_observer(nullptr);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pipeline/machine.hpp"
-#include "testbench/golden/file.hpp"
+#include "testbench/golden/memory_file.hpp"
 
 namespace raycell {
 
@@ -15,9 +15,12 @@ namespace raycell {
 /// the run.
 class GoldenRecorder : public sc_core::sc_module, public LinkObserver, public CellObserver {
   public:
+    /// Files are owned by the caller.
     struct Target {
         const Cell* cell;
-        std::FILE* file;  ///< owned by the caller
+        std::FILE* file;
+        std::FILE* memory_in;   ///< for $readmemh: what the cell is told; null: none
+        std::FILE* memory_out;  ///< what it does
     };
     /// `configuration`: TOML that reproduces the run's settings.
     GoldenRecorder(sc_core::sc_module_name name, Machine& machine, std::vector<Target> targets,
@@ -45,6 +48,8 @@ class GoldenRecorder : public sc_core::sc_module, public LinkObserver, public Ce
 
     Machine& machine_;
     Words words_;
+    Packing packing_;
+    MemoryText memory_;
     std::vector<Target> targets_;
     std::string configuration_;
     std::map<const Link*, std::vector<Role>> roles_;

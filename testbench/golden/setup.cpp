@@ -1,10 +1,12 @@
 // The head of golden vectors: what a cell knows before anything happens.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <set>
 #include <sstream>
 
 #include "testbench/golden/file.hpp"
+#include "testbench/golden/packing.hpp"
 
 namespace raycell {
 namespace {
@@ -110,6 +112,9 @@ class SetupReader {
         const Arithmetic arithmetic(setup_.picture.numbers, extent_of(frame));
         const Words words(arithmetic);
         for (const auto& line : file_.head) what(line, words);
+        const Context context(setup_.scene, setup_.picture);
+        const Packing packing(context, setup_.machine);
+        for (const auto& line : file_.head) check_layout(line, packing.layouts());
         check_links();
     }
 
@@ -133,8 +138,10 @@ class SetupReader {
             read_frame(line);
         } else if (name == "beyond") {
             for (bool& face : setup_.scene.beyond) face = line.whole(1) == 1;
-        } else if (name != "format" && name != "background" && name != "object" && name != "source") {
-            line.fail("expected cell, links, frame, beyond, format, background, object, source or begin");
+        } else if (name != "format" && name != "layout" && name != "background" && name != "object" &&
+                   name != "source") {
+            line.fail(
+                "expected cell, links, frame, beyond, format, layout, background, object, source or begin");
         } else {
             return;
         }
@@ -147,7 +154,11 @@ class SetupReader {
         frame.depth = line.hexadecimal();
         if (!(frame.depth > 0 && frame.depth < 1e9)) line.fail("expected a depth from 0 to 1e9 cell widths");
         frame.viewer_at_infinity = line.whole(1) == 1;
-        for (int axis = 0; axis < 3; ++axis) frame.eye[axis] = line.hexadecimal();
+        for (int axis = 0; axis < 3; ++axis) {
+            frame.eye[axis] = line.hexadecimal();
+            if (!(std::abs(frame.eye[axis]) < 1e9))
+                line.fail("expected a viewer less than 1e9 cell widths away");
+        }
     }
 
     void what(const GoldenFile::Line& tokens, const Words& words) {
@@ -180,6 +191,16 @@ class SetupReader {
         line.finish();
     }
 
+    /// A layout must be that of the configuration.
+    void check_layout(const GoldenFile::Line& tokens, const std::vector<std::string>& layouts) const {
+        if (tokens.tokens[0] != "layout") return;
+        Line line(file_.name, tokens);
+        std::string text = line.next();
+        while (!line.done()) text += " " + line.next();
+        if (std::find(layouts.begin(), layouts.end(), text) == layouts.end())
+            line.fail("'" + text.substr(0, 60) + "': no message of this configuration has this layout");
+    }
+
     void check_links() const {
         const bool host =
             setup_.picture.exterior == ExteriorMode::host && setup_.picture.stage == RunStage::trace &&
@@ -205,7 +226,8 @@ std::string setup_text(const CellSetup& setup, const Context& context, const std
     const Words words(context.arithmetic);
     const Frame& frame = context.scene.frame;
     std::ostringstream text;
-    text << "raycell-golden 1\n";
+    text << golden_version << '\n';
+    if (setup.traversal) text << traversal_part << '\n';
     std::istringstream lines(configuration);
     for (std::string line; std::getline(lines, line);) text << "config " << line << '\n';
     text << "cell " << setup.x << ' ' << setup.y << "\nlinks";
@@ -219,6 +241,8 @@ std::string setup_text(const CellSetup& setup, const Context& context, const std
     text << '\n';
     for (const auto& [name, format] : words.formats().names())
         text << "format " << name << ' ' << format << '\n';
+    for (const std::string& layout : Packing(context, setup.machine).layouts())
+        text << "layout " << layout << '\n';
     text << "background" << vector_text(words, words.formats().intensity, context.background) << '\n';
     for (const Material& object : context.objects) text << "object" << object_text(words, object) << '\n';
     for (const Source& source : context.sources) {

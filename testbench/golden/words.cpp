@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace raycell {
 namespace {
@@ -22,6 +23,18 @@ std::int64_t whole(const std::string& text, const char* expected) {
     const auto [stop, error] = std::from_chars(text.data(), end, value);
     if (text.empty() || stop != end || error != std::errc()) refuse(text, expected);
     return value;
+}
+
+/// Reads mantissa:exponent.
+std::pair<std::int64_t, int> read_pair(const std::string& text) {
+    constexpr const char* expected = "mantissa:exponent, the exponent from -1000 to 1000";
+    const auto colon = text.find(':');
+    if (colon == std::string::npos) refuse(text, expected);
+    const auto mantissa = whole(text.substr(0, colon), expected);
+    const auto exponent = whole(text.substr(colon + 1), expected);
+    if (std::abs(double(mantissa)) > most_integer || std::abs(double(exponent)) > 1000)
+        refuse(text, expected);
+    return {mantissa, int(exponent)};
 }
 
 bool is_hexadecimal(const std::string& text) {
@@ -79,16 +92,30 @@ std::string Words::floating(int bits, double value) const {
     return std::to_string(std::int64_t(mantissa)) + ":" + std::to_string(exponent);
 }
 
+std::string Words::reciprocal(double value) const {
+    int exponent = 0;
+    const double mantissa = std::ldexp(std::frexp(std::abs(value), &exponent), formats().word_bits - 1);
+    if (arithmetic_.exact() || !is_integer(mantissa)) return hexadecimal(std::abs(value));
+    return std::to_string(std::int64_t(mantissa)) + ":" + std::to_string(exponent);
+}
+
+std::string Words::reach(double value) const {
+    if (!arithmetic_.exact() && value == formats().reach.most()) return "inf";
+    return word(formats().reach, value);
+}
+
 double Words::read_floating(int bits, const std::string& text) const {
     if (is_hexadecimal(text)) return read_hexadecimal(text);
-    constexpr const char* expected = "mantissa:exponent, the exponent from -1000 to 1000";
-    const auto colon = text.find(':');
-    if (colon == std::string::npos) refuse(text, expected);
-    const auto mantissa = whole(text.substr(0, colon), expected);
-    const auto exponent = whole(text.substr(colon + 1), expected);
-    if (std::abs(double(mantissa)) > most_integer || std::abs(double(exponent)) > 1000)
-        refuse(text, expected);
-    return scale_by(double(mantissa), int(exponent) - bits + 1);
+    const auto [mantissa, exponent] = read_pair(text);
+    return scale_by(double(mantissa), exponent - bits + 1);
 }
+
+double Words::read_reciprocal(const std::string& text) const {
+    const double size = read_floating(formats().word_bits, text);
+    if (std::signbit(size)) refuse(text, "a number without a sign: its sign is the direction's");
+    return size;
+}
+
+double Words::read_reach(const std::string& text) const { return read_word(formats().reach, text); }
 
 }  // namespace raycell

@@ -23,14 +23,30 @@ std::vector<std::string> tokens_of(const std::string& line);
 /// hexadecimal floating point; infinity is "inf".
 class Words {
   public:
-    explicit Words(const Arithmetic& arithmetic) : arithmetic_(arithmetic) {}
+    /// What the fields of a span depend on.
+    struct Form {
+        HitTest hit;
+        Normals normals;
+        bool gouraud;
+    };
+    explicit Words(const Arithmetic& arithmetic, const PictureSettings& picture = {})
+        : arithmetic_(arithmetic), form_{picture.hit, picture.normals, picture.display == Display::gouraud} {}
+    const Form& form() const { return form_; }
     const Formats& formats() const { return arithmetic_.formats(); }
+    bool exact() const { return arithmetic_.exact(); }
 
     std::string word(const Format& format, double value) const;
     std::string floating(int bits, double value) const;
-    /// Both throw GoldenError for text that is not a number of this kind.
+    /// The size of 1/dx as a message carries it: mantissa:exponent, with the value mantissa ·
+    /// 2^(exponent - word_bits + 1). Its sign is the direction's.
+    std::string reciprocal(double value) const;
+    /// A distance to a source; the word's largest value is infinite.
+    std::string reach(double value) const;
+    /// They throw GoldenError for text that is not a number of this kind.
     double read_word(const Format& format, const std::string& text) const;
     double read_floating(int bits, const std::string& text) const;
+    double read_reciprocal(const std::string& text) const;
+    double read_reach(const std::string& text) const;
 
     /// C's hexadecimal floating point, whatever the arithmetic, or "inf".
     static std::string hexadecimal(double value);
@@ -38,6 +54,7 @@ class Words {
 
   private:
     const Arithmetic& arithmetic_;
+    Form form_;
 };
 
 }  // namespace raycell

@@ -1,12 +1,14 @@
 // render's --golden: the golden vectors of one run, a file for each cell.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "testbench/common/new_file.hpp"
 #include "testbench/common/options.hpp"
 #include "testbench/golden/recorder.hpp"
+#include "testbench/golden/traversal_recorder.hpp"
 
 namespace raycell {
 
@@ -18,15 +20,20 @@ std::vector<std::string> golden_suffixes(const RenderOptions& options);
 
 class GoldenRun {
   public:
-    /// Begins PREFIX.golden_X_Y.txt. `configuration`: the run's, TOML. Machine and outputs must outlive this.
+    /// Begins the files of each cell. `configuration`: the run's, TOML. Machine and outputs must outlive
+    /// this.
     GoldenRun(const RenderOptions& options, const std::string& configuration, Machine& machine,
               OutputSet& outputs);
-    CellObserver& observer() { return *recorder_; }
+    CellObserver& observer();
     /// Call when the run is over.
-    void finish() { recorder_->finish(); }
+    void finish();
 
   private:
-    GoldenRecorder* recorder_;  ///< never destroyed, like the machine that it watches
+    void record_cells(const RenderOptions& options, const std::string& configuration, Machine& machine,
+                      OutputSet& outputs);
+
+    GoldenRecorder* recorder_ = nullptr;            ///< never destroyed, like the machine that it watches
+    std::unique_ptr<TraversalRecorder> traversal_;  ///< instead, with --golden-part traversal
 };
 
 }  // namespace raycell

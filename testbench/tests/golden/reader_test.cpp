@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <sstream>
 
 #include "../property.hpp"
 #include "testbench/golden/file.hpp"
 #include "testbench/golden/messages.hpp"
+#include "testbench/golden/packing.hpp"
 
 namespace raycell {
 namespace {
@@ -27,20 +29,52 @@ dvec3 drawn_vector(const Arithmetic& arithmetic, const Format& format, property:
     return {x, y, drawn(arithmetic, format, random)};
 }
 
+/// A machine whose messages have room for all that is drawn.
+MachineSettings drawn_machine() {
+    MachineSettings machine;
+    machine.ray_store = 100;
+    return machine;
+}
+/// The context of a large array with these numbers, and its packing.
+struct Wires {
+    explicit Wires(const NumberSettings& numbers, PictureSettings more = {})
+        : picture(picture_of(numbers, more)), context(scene, picture), packing(context, drawn_machine()) {}
+    static PictureSettings picture_of(const NumberSettings& numbers, PictureSettings picture) {
+        picture.width = picture.height = 4096;
+        picture.numbers = numbers;
+        return picture;
+    }
+    static CellScene empty_scene() {
+        CellScene scene;
+        scene.frame.width = scene.frame.height = 4096;
+        scene.frame.depth = 200;
+        scene.objects.emplace_back();
+        return scene;
+    }
+    CellScene scene = empty_scene();
+    PictureSettings picture;
+    Context context;
+    Packing packing;
+    const Arithmetic& arithmetic() const { return context.arithmetic; }
+};
+
 Ray drawn_ray(const Arithmetic& arithmetic, property::Random& random) {
     const Formats& f = arithmetic.formats();
     Ray ray;
     ray.id = random.engine()();
-    ray.kind = RayKind(random.whole(0, 5));
-    ray.generation = std::uint8_t(random.whole(0, 63));
+    ray.kind = RayKind(random.whole(0, 3));
+    const bool primary = ray.kind == RayKind::primary;
+    if (!primary) ray.generation = std::uint8_t(random.whole(1, 63));
     ray.home_x = std::uint16_t(random.whole(0, 4095));
-    ray.slot = std::uint32_t(random.whole(0, 100000));
-    ray.child = std::uint8_t(random.whole(0, 63));
+    ray.home_y = std::uint16_t(random.whole(0, 4095));
+    if (!primary) ray.slot = std::uint32_t(random.whole(0, 99));
+    if (ray.kind == RayKind::refracted) ray.child = 1;
+    if (is_shadow(ray.kind)) ray.child = std::uint8_t(random.whole(0, 63));
     ray.position = drawn_vector(arithmetic, f.unit, random);
     set_direction(ray, drawn_vector(arithmetic, f.unit, random), arithmetic);
     ray.weight = drawn(arithmetic, f.unit, random);
     if (random.chance(0.5)) ray.reach = arithmetic.hold_reach(random.uniform(0, 1e6));
-    ray.leaves = random.chance(0.3) ? no_polygon : std::uint32_t(random.whole(0, 1 << 20));
+    ray.leaves = random.chance(0.3) ? no_polygon : std::uint32_t(random.whole(0, (1 << 20) - 2));
     ray.leaves_front = random.chance(0.5);
     ray.fresh = random.chance(0.5);
     ray.outside = random.chance(0.5);
@@ -52,11 +86,13 @@ LoadItem drawn_span(const Arithmetic& arithmetic, property::Random& random) {
     LoadItem item;
     item.kind = LoadItem::Kind::span;
     Span& span = item.span;
-    span.polygon = std::uint32_t(random.whole(0, 1 << 20));
+    span.polygon = std::uint32_t(random.whole(0, (1 << 20) - 1));
     span.x = random.whole(0, 4095);
     span.last = random.whole(0, 4095);
     span.drop = random.whole(0, 2);
+    span.object = std::uint32_t(random.whole(0, 100));
     span.plane.n = drawn_vector(arithmetic, f, random);
+    span.plane.n[span.drop] = random.chance(0.5) ? 1 : -1;
     span.z = drawn(arithmetic, f, random);
     span.dn = drawn_vector(arithmetic, f, random);
     span.normal.du = drawn_vector(arithmetic, f, random);
@@ -73,11 +109,22 @@ Arithmetic drawn_arithmetic(property::Random& random) {
             {random.whole(1, 4096), random.whole(1, 4096), random.uniform(1, 900), 1}};
 }
 
-/// Expects the text of a message to be the same after reading and writing it again.
-void expect_round_trip(const Words& words, const Message& message) {
+/// Expects text, remarks and bits of a message to be the same after reading and writing it again.
+void expect_round_trip(const Wires& wires, const Message& message) {
+    const Arithmetic& arithmetic = wires.arithmetic();
+    const Words words(arithmetic, wires.picture);
+    const Packing& packing = wires.packing;
     MessagePools pools;
     const std::string text = text_of(words, message);
-    EXPECT_EQ(text_of(words, read_message(words, tokens_of(text), pools)), text);
+    const std::string remarks = remarks_of(message);
+    const Message again = read_message(words, tokens_of(text), tokens_of(remarks), {}, pools);
+    EXPECT_EQ(text_of(words, again), text);
+    EXPECT_EQ(remarks_of(again), remarks);
+    const std::string bits = packing.packed(message);
+    EXPECT_EQ(packing.packed(again), bits);
+    EXPECT_EQ(bits.empty(), arithmetic.exact());
+    if (bits.empty() || message.kind == Message::Kind::load) return;
+    EXPECT_EQ(packing.text_of_bits(bits), text) << "words and bits say the same";
 }
 
 TEST(GoldenText, WordsOfEveryFormatComeBackBitForBit) {
@@ -116,28 +163,102 @@ TEST(GoldenText, MessagesComeBackWordForWord) {
     for (const std::uint64_t seed : property::seeds(1, 300)) {
         SCOPED_TRACE(property::rerun(seed));
         property::Random random(seed);
-        const Arithmetic arithmetic = drawn_arithmetic(random);
-        const Words words(arithmetic);
+        NumberSettings numbers = words_of(random.whole(8, 32));
+        if (random.chance(0.25)) numbers.arithmetic = Numbers::exact;
+        PictureSettings picture;
+        if (random.chance(0.3)) picture.hit = HitTest::depth;
+        if (random.chance(0.5)) picture.normals = Normals::voxel;
+        if (random.chance(0.3)) picture.display = Display::gouraud;
+        const Wires wires(numbers, picture);
+        const Arithmetic& arithmetic = wires.arithmetic();
         RayPacket packet;
         packet.ray = drawn_ray(arithmetic, random);
-        expect_round_trip(words, Message(&packet));
-        Answer answer = answer_to(packet.ray, Answer::Kind(random.whole(0, 3)));
+        expect_round_trip(wires, Message(&packet));
+        const bool verdict = is_shadow(packet.ray.kind);
+        Answer answer = answer_to(packet.ray, verdict              ? Answer::Kind(random.whole(1, 2))
+                                              : random.chance(0.5) ? Answer::Kind::intensity
+                                                                   : Answer::Kind::postponed);
         answer.colour = drawn_vector(arithmetic, arithmetic.formats().intensity, random);
-        expect_round_trip(words, Message(&answer));
+        expect_round_trip(wires, Message(&answer));
         LoadItem span = drawn_span(arithmetic, random);
-        expect_round_trip(words, Message(&span));
+        expect_round_trip(wires, Message(&span));
     }
+}
+
+/// A change of the message that the wires do not carry.
+template <typename F>
+void expect_masked(const Words& words, const Ray& ray, F&& change) {
+    RayPacket packet;
+    packet.ray = ray;
+    const std::string before = text_of(words, Message(&packet));
+    change(packet.ray);
+    EXPECT_EQ(text_of(words, Message(&packet)), before);
+}
+
+TEST(GoldenText, OnlyWhatTheWiresCarryIsInTheWords) {
+    for (const std::uint64_t seed : property::seeds(1, 100)) {
+        SCOPED_TRACE(property::rerun(seed));
+        property::Random random(seed);
+        const Arithmetic arithmetic = drawn_arithmetic(random);
+        const Words words(arithmetic);
+        const Ray ray = drawn_ray(arithmetic, random);
+        expect_masked(words, ray, [](Ray& r) { r.id += 1; });
+        expect_masked(words, ray, [](Ray& r) { r.fresh = !r.fresh; });
+        expect_masked(words, ray, [](Ray& r) { r.leaves_front = !r.leaves_front; });
+        if (is_shadow(ray.kind)) {
+            expect_masked(words, ray, [](Ray& r) { r.generation += 1; });
+            expect_masked(words, ray, [](Ray& r) { r.weight /= 2; });
+            expect_masked(words, ray, [](Ray& r) { r.kind = RayKind::precast; });
+        } else {
+            expect_masked(words, ray, [](Ray& r) { r.reach = 1; });
+        }
+        Answer verdict = answer_to(ray, Answer::Kind::lit);
+        const std::string before = text_of(words, Message(&verdict));
+        verdict.colour = dvec3(1);
+        EXPECT_EQ(text_of(words, Message(&verdict)), before);
+    }
+}
+
+TEST(GoldenText, TheWordsOfARayAreTheFieldsOfItsLayout) {
+    const Wires wires(words_of(20));
+    const Words words(wires.arithmetic());
+    std::map<std::string, std::vector<std::string>> names;
+    for (const std::string& layout : wires.packing.layouts()) {
+        const auto tokens = tokens_of(layout);
+        for (std::size_t i = 2; i < tokens.size(); ++i)  // after name and type
+            names[tokens[0]].push_back(tokens[i].substr(0, tokens[i].find(':')));
+    }
+    EXPECT_EQ(field_names(words, {"ray"}), names["ray"]);
+    EXPECT_EQ(field_names(words, {"shadow_ray"}), names["shadow_ray"]);
+    EXPECT_EQ(field_names(words, {"intensity"}), names["intensity"]);
+    for (const char* type : {"lit", "blocked", "postponed"})
+        EXPECT_EQ(field_names(words, {type}), names["verdict"]);
+}
+
+TEST(GoldenText, BitsThatAreNoMessageAreRefused) {
+    const Wires wires(words_of(20));
+    for (const std::string& bits :
+         std::vector<std::string>{"", "0", "g", "0123456789", "c000000000", std::string(200, '0')})
+        EXPECT_THROW(wires.packing.text_of_bits(bits), GoldenError) << bits;
+    NumberSettings exact;
+    exact.arithmetic = Numbers::exact;
+    EXPECT_THROW(Wires(exact).packing.text_of_bits("60000000"), GoldenError);
 }
 
 TEST(GoldenText, EveryFieldOfAMessageHasAName) {
     const Arithmetic arithmetic;
     const Words words(arithmetic);
     RayPacket packet;
+    RayPacket shadow;
+    shadow.ray.kind = RayKind::shadow;
     Answer answer;
+    Answer verdict;
+    verdict.kind = Answer::Kind::lit;
     LoadItem item;
-    for (const Message& message : {Message(&packet), Message(&answer), Message(&item)}) {
+    for (const Message& message :
+         {Message(&packet), Message(&shadow), Message(&answer), Message(&verdict), Message(&item)}) {
         const auto tokens = tokens_of(text_of(words, message));
-        EXPECT_EQ(field_names(tokens).size(), tokens.size() - 1) << tokens[0];
+        EXPECT_EQ(field_names(words, tokens).size(), tokens.size() - 1) << tokens[0];
     }
 }
 
@@ -146,8 +267,9 @@ TEST(GoldenText, EdgesOfASpanAreNamedThoughTheirNumberVaries) {
     LoadItem item;
     item.kind = LoadItem::Kind::span;
     item.span.edge_count = 2;
-    const auto tokens = tokens_of(text_of(Words(arithmetic), Message(&item)));
-    const auto names = field_names(tokens);
+    const Words words(arithmetic);
+    const auto tokens = tokens_of(text_of(words, Message(&item)));
+    const auto names = field_names(words, tokens);
     ASSERT_EQ(names.size(), tokens.size() - 1);
     const auto edges = std::find(names.begin(), names.end(), "edges");
     ASSERT_NE(edges, names.end());
@@ -160,26 +282,28 @@ TEST(GoldenText, AWrongFieldIsNamed) {
     const Words words(arithmetic);
     RayPacket packet;
     const auto tokens = tokens_of(text_of(words, Message(&packet)));
-    const auto names = field_names(tokens);
+    const auto names = field_names(words, tokens);
     MessagePools pools;
     for (std::size_t i = 1; i < tokens.size(); ++i) {
         auto wrong = tokens;
         wrong[i] = "?";
         try {
-            read_message(words, wrong, pools);
+            read_message(words, wrong, {}, {}, pools);
             ADD_FAILURE() << names[i - 1];
         } catch (const GoldenError& error) {
             EXPECT_NE(std::strstr(error.what(), ("'" + names[i - 1] + "'").c_str()), nullptr) << error.what();
         }
     }
-    EXPECT_THROW(read_message(words, {"ray"}, pools), GoldenError);
+    EXPECT_THROW(read_message(words, {"ray"}, {}, {}, pools), GoldenError);
     auto longer = tokens;
     longer.push_back("1");
-    EXPECT_THROW(read_message(words, longer, pools), GoldenError);
+    EXPECT_THROW(read_message(words, longer, {}, {}, pools), GoldenError);
+    for (const char* remark : {"pixel x", "branch -1", "pixel"})
+        EXPECT_THROW(read_message(words, tokens, tokens_of(remark), {}, pools), GoldenError) << remark;
 }
 
 const char* const good =
-    "raycell-golden 1\n"
+    "raycell-golden 2\n"
     "config cells = \"3x3\"\n"
     "cell 1 1\n"
     "links east south west north\n"
@@ -190,11 +314,11 @@ const char* const good =
     "object 1024 1024 1024 819 0 0 128:0 16384 1\n"
     "source 1:0 2:0 3:0 1 1 1\n"
     "begin\n"
-    "1 in west 0 6 features 0\n"
+    "1 in west 0 6 - features 0 ; pixel 3\n"
     "\n"
     "# a remark\n"
     "9 take west 0\r\n"
-    "9 out east 0 6 features 0\n"
+    "9 out east 0 6 - features 0\n"
     "20 free east 0\n"
     "30 phase trace\n"
     "31 drain 1\n"
@@ -217,7 +341,7 @@ TEST(GoldenReader, ReadsEveryKindOfLine) {
     ASSERT_EQ(file.events.size(), 7u);
     EXPECT_EQ(file.last, 40u);
     EXPECT_EQ(file.configuration, "cells = \"3x3\"\n");
-    EXPECT_EQ(text_of(file.events[0]), "1 in west 0 6 features 0");
+    EXPECT_EQ(text_of(file.events[0]), "1 in west 0 6 - features 0 ; pixel 3");
     EXPECT_EQ(text_of(file.events[1]), "9 take west 0");
     EXPECT_EQ(file.events[1].line, 15);
     CellSetup setup = setup_of_three();
@@ -246,17 +370,17 @@ std::string with_line(int number, const std::string& line) {
 }
 
 TEST(GoldenReader, NamesTheLineOfWhatIsWrong) {
-    const std::vector<std::pair<int, std::string>> wrong = {{1, "raycell-golden 2"},
+    const std::vector<std::pair<int, std::string>> wrong = {{1, "raycell-golden 1"},
                                                             {12, "x in west 0 6 features 0"},
-                                                            {12, "1 in up 0 6 setup"},
-                                                            {12, "1 in west 9 6 setup"},
-                                                            {12, "1 in west 0 0 setup"},
-                                                            {12, "1 in west 0 6"},
-                                                            {12, "50 in west 0 6 setup"},
+                                                            {12, "1 in up 0 6 - setup"},
+                                                            {12, "1 in west 9 6 - setup"},
+                                                            {12, "1 in west 0 0 - setup"},
+                                                            {12, "1 in west 0 6 -"},
+                                                            {12, "50 in west 0 6 - setup"},
                                                             {15, "9 take west"},
                                                             {15, "9 take west 0 0"},
                                                             {15, "9 eats west 0"},
-                                                            {16, "9 out load 0 6 setup"},
+                                                            {16, "9 out load 0 6 - setup"},
                                                             {18, "30 phase"},
                                                             {20, "35 pixel 0 0"},
                                                             {15, "99999999999999999999 take west 0"},
@@ -272,6 +396,12 @@ TEST(GoldenReader, NamesTheLineOfWhatIsWrong) {
         }
     }
     EXPECT_THROW(read(""), GoldenError);
+    try {
+        read(with_line(1, "raycell-golden 1"));
+    } catch (const GoldenError& error) {
+        EXPECT_NE(std::strstr(error.what(), "record them anew with 'raycell render --golden'"), nullptr)
+            << error.what();
+    }
     EXPECT_THROW(read(with_line(21, "")), GoldenError) << "a record that was cut off";
 }
 
@@ -288,6 +418,7 @@ TEST(GoldenReader, NamesWhatIsWrongInTheHead) {
                                                             {6, "beyond 2 0 0 0 0 0"},
                                                             {7, "format unit Q3.17"},
                                                             {7, "format length Q3.17"},
+                                                            {7, "layout ray type:3 x:20"},
                                                             {8, "background 0 0"},
                                                             {9, "object 1 2 3"},
                                                             {10, "source 1 2 3 1 1 1"},
@@ -301,7 +432,7 @@ TEST(GoldenReader, NamesWhatIsWrongInTheHead) {
 }
 
 TEST(GoldenReader, AnyTextIsReadOrRefusedButNeverMore) {
-    const std::string letters = "0123456789abcdefxp:.+- \nkezinfw#";
+    const std::string letters = "0123456789abcdefxp:.+- \nkezinfw#;";
     for (const std::uint64_t seed : property::seeds(1, 2000)) {
         SCOPED_TRACE(property::rerun(seed));
         property::Random random(seed);
@@ -324,7 +455,8 @@ TEST(GoldenReader, AnyTextIsReadOrRefusedButNeverMore) {
             const Words words(context.arithmetic);
             MessagePools pools;
             for (const GoldenEvent& event : file.events) {
-                if (event.what == GoldenEvent::What::in) read_message(words, event.tokens, pools);
+                if (event.what == GoldenEvent::What::in)
+                    read_message(words, event.tokens, event.remarks, {}, pools);
             }
         } catch (const GoldenError&) {
         }
