@@ -73,11 +73,12 @@ void fields_of_span(A& a, S& span) {
     if (a.form().hit == HitTest::depth) {
         a.word("z", span.z, f);
         a.word("dz", span.dz, f);
+        a.number("axis", span.drop, 2);
+        fields_of_vector(a, {"nx", "ny", "nz"}, span.plane.n, a.formats().unit);
         if (a.form().normals == Normals::voxel) {
-            fields_of_vector(a, {"nx", "ny", "nz"}, span.n, f);
-            fields_of_vector(a, {"dnx", "dny", "dnz"}, span.dn, f);
+            fields_of_vector(a, {"ncx", "ncy", "ncz"}, span.n, f);
+            fields_of_vector(a, {"dncx", "dncy", "dncz"}, span.dn, f);
         } else {
-            a.number("axis", span.drop, 2);
             fields_of_normal(a, span.normal);
         }
     } else {
@@ -167,7 +168,7 @@ LoadItem read_load(const Words& words, FieldReader& reader, LoadItem::Kind kind,
     if (auto reader = remark(words, remarks, "object"))
         reader->number("object", item.span.object, 0xffffffffU);
     const double dominant = std::abs(item.span.plane.n[item.span.drop]);
-    if (!words.exact() && words.form().hit != HitTest::depth && dominant != 1)
+    if (!words.exact() && dominant != 1)
         throw GoldenError("field 'axis': expected that of the component of the normal that is 1 or -1");
     return item;
 }
