@@ -35,6 +35,35 @@ RegisterIndex Assembler::constant(const std::string& name, std::int64_t value, i
     return index;
 }
 
+RegisterIndex Assembler::array(const std::string& name, std::size_t count, int bits, int fraction) {
+    const RegisterIndex first = program_.registers.size();
+    for (std::size_t i = 0; i < count; ++i) reg(name + " " + std::to_string(i), bits, fraction);
+    program_.arrays[first] = count;
+    return first;
+}
+
+RegisterIndex Assembler::constants(const std::string& name, const std::vector<std::int64_t>& values, int bits,
+                                   int fraction) {
+    const RegisterIndex first = program_.registers.size();
+    for (std::size_t i = 0; i < values.size(); ++i)
+        constant(name + " " + std::to_string(i), values[i], bits, fraction);
+    program_.arrays[first] = values.size();
+    return first;
+}
+
+void Assembler::fetch(RegisterIndex target, RegisterIndex array, RegisterIndex number) {
+    same_fraction(target, array);
+    MicroInstruction& i = emit(Op::fetch);
+    i.target = target;
+    i.a = array;
+    i.b = number;
+}
+
+void Assembler::store(RegisterIndex array, RegisterIndex number, RegisterIndex a) {
+    fetch(a, array, number);
+    program_.instructions.back().op = Op::store;
+}
+
 void Assembler::same_fraction(RegisterIndex a, RegisterIndex b) const {
     const MicroRegister& x = program_.registers[a];
     const MicroRegister& y = program_.registers[b];
@@ -85,6 +114,11 @@ void Assembler::sum(RegisterIndex target, RegisterIndex c, const std::vector<Fac
 void Assembler::sum_to_nearest(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products) {
     sum(target, c, products);
     program_.instructions.back().nearest = true;
+}
+
+void Assembler::sum_down(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products) {
+    sum(target, c, products);
+    program_.instructions.back().down = true;
 }
 
 void Assembler::half_sum(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products) {
@@ -149,6 +183,11 @@ void Assembler::round(RegisterIndex target, RegisterIndex a) {
     MicroInstruction& out = emit(Op::round);
     out.target = target;
     out.shift = program_.registers[a].fraction - program_.registers[target].fraction;
+}
+
+void Assembler::round_down(RegisterIndex target, RegisterIndex a) {
+    round(target, a);
+    program_.instructions.back().down = true;
 }
 
 void Assembler::difference(RegisterIndex target, RegisterIndex a, RegisterIndex b) {
@@ -244,6 +283,26 @@ void Assembler::table(RegisterIndex start, RegisterIndex rise, const MicroTable&
     i.a = a;
     i.shift = shift;
     i.table_index = std::size_t(known - program_.tables.begin());
+}
+
+void Assembler::divide(const std::string& name, RegisterIndex target, RegisterIndex rest, RegisterIndex by,
+                       int digits, RegisterIndex one) {
+    emit(Op::clear);
+    for (int digit = digits - 1; digit >= 0; --digit) {
+        const std::string next = name + " digit " + std::to_string(digit);
+        MicroInstruction& twice = emit(Op::add);
+        twice.target = twice.a = twice.b = rest;
+        jump_to(Op::jump_less, rest, by, next);
+        MicroInstruction& off = emit(Op::subtract);
+        off.target = off.a = rest;
+        off.b = by;
+        MicroInstruction& set = emit(Op::take_off);
+        set.a = one;
+        set.value = 1;
+        set.shift = digit;
+        label(next);
+    }
+    keep(target);
 }
 
 void Assembler::label(const std::string& name) {

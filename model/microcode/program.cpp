@@ -12,9 +12,10 @@ namespace {
 
 using Op = MicroInstruction::Op;
 
-constexpr const char* op_names[] = {"constant",  "move",          "add",       "subtract",   "least", "most",
-                                    "load",      "add to",        "clear",     "absolute",   "count", "low",
-                                    "high",      "bit",           "table",     "multiply",   "round", "jump",
+constexpr const char* op_names[] = {"constant",  "move",          "add",       "subtract",   "least",
+                                    "most",      "load",          "add to",    "clear",      "absolute",
+                                    "count",     "low",           "high",      "bit",        "fetch",
+                                    "store",     "table",         "multiply",  "round",      "jump",
                                     "jump less", "jump negative", "jump zero", "jump minus", "end"};
 
 /// Bits of a two's complement word that holds the value.
@@ -48,7 +49,7 @@ int MicroProgram::instruction_bits() const {
     const int operation = 5;
     const int address = bits_for(std::int64_t(registers.size()));
     const int shift = 7;
-    const int rounding = 2;  // shifted by a register, to the nearest
+    const int rounding = 2;  // shifted by a register, the rounding that is not the machine's
     const int jump = bits_for(words());
     // A target or the place of a jump, two operands of each multiplier, which parts of them and the sign.
     return operation + std::max(address, jump) + datapath.multipliers * (2 * (address + 2) + 1) + shift +
@@ -92,6 +93,10 @@ std::string MicroProgram::listing() const {
                 break;
             case Op::bit:
                 text += " " + reg(i.target) + " = bit " + reg(i.b) + " of " + reg(i.a);
+                break;
+            case Op::fetch:
+            case Op::store:
+                text += " " + reg(i.target) + ", " + reg(i.a) + " + " + reg(i.b);
                 break;
             case Op::table:
                 text += " " + reg(i.target) + ", " + reg(i.b) + " = " + tables[i.table_index].name + " at " +
@@ -190,6 +195,16 @@ MicroMachine::Value MicroMachine::rounded(int shift, int bits, bool nearest) con
     return std::clamp(value, -most - 1, most);
 }
 
+/// The register that a fetch or a store selects.
+RegisterIndex MicroMachine::element(const MicroInstruction& instruction) const {
+    const Value number = values_[instruction.b];
+    if (number < 0 || number >= Value(program_.arrays.at(instruction.a)))
+        throw std::logic_error("microprogram " + program_.name + ": " +
+                               program_.registers[instruction.a].name + " has no register " +
+                               std::to_string(std::int64_t(number)) + " after it");
+    return instruction.a + RegisterIndex(number);
+}
+
 int MicroMachine::run(int limit) {
     const auto write = [this](RegisterIndex index, Value value) { values_[index] = checked(index, value); };
     std::size_t at = 0;
@@ -240,6 +255,12 @@ int MicroMachine::run(int limit) {
             case Op::bit:
                 write(i.target, values_[i.a] >> int(values_[i.b]) & 1);
                 break;
+            case Op::fetch:
+                write(i.target, values_[element(i)]);
+                break;
+            case Op::store:
+                write(element(i), values_[i.target]);
+                break;
             case Op::table: {
                 const auto& line =
                     program_.tables[i.table_index].lines.at(std::size_t(values_[i.a] >> i.shift));
@@ -258,7 +279,7 @@ int MicroMachine::run(int limit) {
             case Op::round:
                 write(i.target, rounded(i.shift - (i.shifts_by ? int(values_[i.b]) : 0),
                                         program_.registers[i.target].bits,
-                                        i.nearest || program_.rounding == Rounding::nearest));
+                                        !i.down && (i.nearest || program_.rounding == Rounding::nearest)));
                 break;
             case Op::jump:
                 at = i.to;

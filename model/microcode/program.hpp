@@ -38,6 +38,8 @@ struct MicroInstruction {
         low,        ///< target = the last `shift` bits of a
         high,       ///< target = a / 2^shift, cut off
         bit,        ///< target = bit number b of a
+        fetch,      ///< target = the register of the array a whose number is in b
+        store,      ///< that register = target
         table,      ///< target, second target = the line of the table that a's bits from `shift` on select
         multiply,   ///< accumulator += the products
         round,      ///< target = accumulator / 2^shift, rounded and saturated; with `by`, / 2^(shift − by)
@@ -62,6 +64,7 @@ struct MicroInstruction {
     RegisterIndex b = 0;
     std::int64_t value = 0;
     bool nearest = false;  ///< round: to the nearest, whatever the machine's rounding
+    bool down = false;     ///< round: cut off, whatever the machine's rounding
     int shift = 0;
     bool shifts_by = false;  ///< round: by register b, too
     std::size_t table_index = 0;
@@ -87,6 +90,8 @@ struct MicroProgram {
     std::vector<MicroRegister> registers;
     std::vector<MicroInstruction> instructions;
     std::vector<MicroTable> tables;
+    /// First register of each array, and how many it has.
+    std::map<RegisterIndex, std::size_t> arrays;
 
     RegisterIndex find(const std::string& name) const;  ///< throws std::out_of_range
     /// Bits of all registers.
@@ -123,6 +128,7 @@ class MicroMachine {
   private:
     Value part(RegisterIndex index, int number, int width) const;
     Value rounded(int shift, int bits, bool nearest) const;
+    RegisterIndex element(const MicroInstruction& instruction) const;
     Value checked(RegisterIndex index, Value value) const;
 
     const MicroProgram& program_;
@@ -142,17 +148,29 @@ class Assembler {
     /// A register that holds a number for ever.
     RegisterIndex constant(const std::string& name, std::int64_t value, int bits, int fraction);
 
+    /// `count` registers of one format beside each other, "name 0" and so on; an address register selects.
+    RegisterIndex array(const std::string& name, std::size_t count, int bits, int fraction);
+    /// The same of numbers that never change.
+    RegisterIndex constants(const std::string& name, const std::vector<std::int64_t>& values, int bits,
+                            int fraction);
+    /// target = the array's register of this number.
+    void fetch(RegisterIndex target, RegisterIndex array, RegisterIndex number);
+    /// The array's register of this number = a.
+    void store(RegisterIndex array, RegisterIndex number, RegisterIndex a);
+
     struct Factor {
         RegisterIndex a;
         RegisterIndex b;
         bool negative = false;
     };
     /// target = c + the products, rounded once. `c` may be `none`. With `by`, a register that holds a whole
-    /// number, the sum of the products counts 2^by times as much; then there is no c.
+    /// number, all of it counts 2^by times as much.
     void sum(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products,
              RegisterIndex by = none);
     /// The same, rounded to the nearest whatever the machine's rounding: so are accumulators kept.
     void sum_to_nearest(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products);
+    /// The same, cut off whatever the machine's rounding: so are lines computed while loading.
+    void sum_down(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products);
     /// target = half of c + the products, rounded once.
     void half_sum(RegisterIndex target, RegisterIndex c, const std::vector<Factor>& products);
     void move(RegisterIndex target, RegisterIndex a);
@@ -162,6 +180,10 @@ class Assembler {
     void most(RegisterIndex target, RegisterIndex a, RegisterIndex b);
     /// target = a, rounded and saturated to the target's format.
     void round(RegisterIndex target, RegisterIndex a);
+
+    /// The same, cut off whatever the machine's rounding.
+    void round_down(RegisterIndex target, RegisterIndex a);
+    int fraction(RegisterIndex a) const { return program_.registers[a].fraction; }
 
     /// target = a − b, whose last bits need not be the same.
     void difference(RegisterIndex target, RegisterIndex a, RegisterIndex b);
@@ -182,6 +204,11 @@ class Assembler {
     void bit(RegisterIndex target, RegisterIndex a, RegisterIndex number);
     /// The start and the rise of a table's line, selected by a's bits from `shift` on.
     void table(RegisterIndex start, RegisterIndex rise, const MicroTable& lines, RegisterIndex a, int shift);
+
+    /// target = rest · 2^digits / by, cut off, digit by digit; 0 <= rest < by, and rest is lost. All are
+    /// taken as whole numbers; `one` holds 1. Four instructions a digit, of which two or four are run.
+    void divide(const std::string& name, RegisterIndex target, RegisterIndex rest, RegisterIndex by,
+                int digits, RegisterIndex one);
 
     void label(const std::string& name);
     void jump(const std::string& to);
