@@ -102,6 +102,56 @@ MicroProgram ambient_program(const MicroSetting& setting);
 /// so far). Out: sx, sy, sz. For a power that is `rounded`, also in: power.
 MicroProgram light_program(const MicroSetting& setting);
 
+/// The depth levels of a cube.
+struct DepthLevels {
+    double level = 1;  ///< height, cells: a mantissa of 16 bits
+    int count = 1;
+};
+
+// Loading. A span, below: "drop x", "drop z" (1: that axis of the plane is dropped; both 0: y), negative (1:
+// the normal's component there is -1), nu, nv, c (its other two, its offset), slack, edges (how many), "edge
+// a 0", "edge b 0", "edge c 0" and so on; normals: bx to bz, ux to uz, vx to vz. At rung `depth`: "drop x",
+// "drop z", z, dz, nx to nz, dnx to dnz, normals.
+
+/// Whether a load message makes a voxel in a cell. In: type (5: a span), x (of the span), column. Out: makes.
+MicroProgram forward_program(const MicroSetting& setting);
+
+/// Moves a span to the next cell: advance(). In: a span, its x and last, normals. Out: passes (0: that was
+/// its last cell, nothing else is set), x, c, "edge c 0" and so on, bx to bz; rung `depth`: x, z, nx to nz
+/// (`voxel`), bx to bz (`linear`).
+MicroProgram advance_program(const MicroSetting& setting, HitTest rung, Normals normals);
+
+/// Cuts a part by a line, as part_in() does. In: "u 0", "v 0" and so on (the corners, two banks of 10),
+/// corners (how many), begin (number of the first: 0 or 10), other (where the other bank begins), "line a" to
+/// "line c". Out: corners, begin (0 and 10 exchanged if the line cuts).
+MicroProgram cut_program(const MicroSetting& setting);
+
+/// part_in() of a span and a cell. In: a span. Out: made (0: there is no part), corners, "z low", "z high",
+/// "middle u", "middle v", "twice area".
+MicroProgram part_program(const MicroSetting& setting, const DepthLevels& levels);
+
+/// The run of a part. In: "z low", "z high", slack, "drop z". Out: "near level", "far level", near, far.
+MicroProgram levels_program(const MicroSetting& setting, const DepthLevels& levels);
+
+/// One edge of a voxel. In: "line a" to "line c" (the span's edge), near, far, "drop z". Out: "held a" to
+/// "held c".
+MicroProgram edge_of_voxel_program(const MicroSetting& setting);
+
+/// The plane of a voxel. In: nu, nv, c, negative, "drop z", near, "point u", "anchor v" (the voxel's point
+/// from the run's beginning). Out: "plane u", "plane v", "plane c".
+MicroProgram plane_of_voxel_program(const MicroSetting& setting);
+
+/// The normals of a voxel. In: normals, "drop z", near, "point u", "point v", "anchor v". Out: "normal bx" to
+/// "normal bz", "normal ux", "normal vx" and so on.
+MicroProgram normal_of_voxel_program(const MicroSetting& setting, Normals normals);
+
+/// What a cell does with a span that makes a voxel: the first piece of a polygon in the cell. In: a span, its
+/// x and last, normals. Out: made (0: the polygon does not touch the cell); that of `levels`, the voxel's
+/// plane and normals, "point u", "point v", "twice area", corners, crossings (how many edges), "kept a 0" and
+/// so on (the edges); the span advanced. At rung `mask` without the mask.
+MicroProgram voxel_program(const MicroSetting& setting, const DepthLevels& levels, HitTest rung,
+                           Normals normals);
+
 /// combine_intensity() of one channel. In: local, mirror, transmit, reflected, refracted. Out: sum.
 MicroProgram combine_program(const MicroSetting& setting);
 

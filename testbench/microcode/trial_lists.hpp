@@ -9,6 +9,7 @@ using TrialList = std::vector<std::unique_ptr<MicroTrial>>;
 
 TrialList traversal_trials(const MicroSetting& setting);  ///< the walk, the rungs' tests
 TrialList ray_trials(const MicroSetting& setting);        ///< a hit's setup, sources, new rays, answers
+TrialList loading_trials(const MicroSetting& setting);    ///< a span's way, voxels
 TrialList shading_trials(const MicroSetting& setting);    ///< operators, directions, intensities
 
 /// A unit vector; some components are 0 or small.

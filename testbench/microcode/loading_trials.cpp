@@ -1,0 +1,490 @@
+// Trials of what a cell does while it is loaded, on spans of random polygons.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "model/loading/loading.hpp"
+#include "model/loading/loading_words.hpp"
+#include "model/numbers/field_widths.hpp"
+#include "testbench/microcode/trial_lists.hpp"
+
+namespace raycell {
+namespace {
+
+/// The levels of a machine: as many as it asks for, of a height that cells can be told.
+DepthLevels levels_of(const ArrayExtent& extent) {
+    DepthLevels levels;
+    levels.count = std::max(1, int(std::lround(extent.depth / extent.level)));
+    const double level = extent.depth / levels.count;
+    const double step = scale_by(1, exponent_of(level) + 1 - field::level_mantissa);
+    levels.level = std::floor(level / step) * step;
+    return levels;
+}
+
+/// Draws spans: of triangles from half a cell to several cells wide, now and then much larger or seen
+/// edge-on.
+class SpanDraw {
+  public:
+    SpanDraw(const MicroSetting& s, HitTest rung, Normals normals)
+        : extent(s.extent), levels(levels_of(s.extent)), arithmetic(s.numbers, s.extent) {
+        settings.hit = rung;
+        settings.normals = normals;
+        settings.numbers = s.numbers;
+        settings.depth_levels = levels.count;
+        extent.depth = levels.level * levels.count;
+    }
+
+    Span draw(MicroRandom& random) {
+        for (;;) {
+            std::optional<Span> span = try_once(random);
+            if (span && fits(*span)) return *span;
+        }
+    }
+
+    ArrayExtent extent;
+    DepthLevels levels;
+    PictureSettings settings;
+    Arithmetic arithmetic;
+
+  private:
+    /// Fields that turn fast may leave the range of loading words away from the origin: there is no such
+    /// message.
+    bool fits(const Span& span) const {
+        const Format& word = arithmetic.formats().loading;
+        for (int i = 0; i < 3; ++i) {
+            if (span.normal.base[i] < word.least() || span.normal.base[i] > word.most()) return false;
+        }
+        return true;
+    }
+
+    std::optional<Span> try_once(MicroRandom& random) {
+        const double size = random.chance(0.1) ? 40 : std::exp2(random.uniform(-1, 3));
+        const dvec3 centre(random.uniform(0, extent.width), random.uniform(0, extent.height),
+                           random.uniform(0, extent.depth));
+        std::array<dvec3, 3> corners;
+        std::array<dvec3, 3> normals;
+        const bool axial = random.chance(0.1);
+        const int axis = int(random.uniform(0, 3));
+        for (std::size_t i = 0; i < 3; ++i) {
+            dvec3 way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+            if (axial) way[axis] = 0;
+            corners[i] = centre + size / 2 * way;
+        }
+        const dvec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+        if (glm::length(across) < 0.01 * size * size) return std::nullopt;
+        const bool flat = random.chance(0.2);
+        const double bend = random.chance(0.1) ? 2 : 0.3;
+        for (dvec3& normal : normals) {
+            normal = glm::normalize(across);
+            for (int i = 0; !flat && i < 3; ++i) normal[i] += bend * random.uniform(-1, 1);
+            normal = glm::normalize(normal);
+        }
+        Polygon polygon = make_triangle(1, 0, corners, normals);
+        const Box cube{{0, 0, 0}, {double(extent.width), double(extent.height), extent.depth}};
+        if (!clip_to_cube(polygon, cube, arithmetic)) return std::nullopt;
+        const std::vector<Trapeze> trapezes = precompute(polygon, arithmetic, extent.width, extent.height);
+        if (trapezes.empty()) return std::nullopt;
+        const Trapeze& t = trapezes[std::size_t(random.uniform(0, double(trapezes.size())))];
+        const int row = std::min(int(random.uniform(t.rows.first, t.rows.last + 1)), t.rows.last);
+        std::optional<Span> span = cut_span(t, row, extent.depth, settings.hit, arithmetic);
+        if (!span) return std::nullopt;
+        for (int cells = int(random.uniform(0, span->last - span->x + 1)); cells > 0; --cells)
+            advance(*span, arithmetic);
+        return span;
+    }
+};
+
+class SpanTrial : public MicroTrial {
+  protected:
+    SpanTrial(const MicroSetting& s, MicroProgram program, MicroCost cost, HitTest rung, Normals normals)
+        : MicroTrial(s, std::move(program), std::move(cost)), spans_(s, rung, normals) {}
+
+    void draw_span(MicroRandom& random) { span_ = spans_.draw(random); }
+    void put_axis() {
+        put("drop x", span_.drop == 0);
+        put("drop z", span_.drop == 2);
+    }
+    void put_plane() {
+        const Projection axes = projection(span_.drop);
+        put("negative", span_.plane.n[span_.drop] < 0);
+        put("nu", span_.plane.n[axes.u]);
+        put("nv", span_.plane.n[axes.v]);
+        put("c", span_.plane.c);
+        put("slack", span_.slack[span_.drop]);
+        put("edges", span_.edge_count);
+        for (std::size_t i = 0; i < std::size_t(span_.edge_count); ++i) {
+            const std::string number = " " + std::to_string(i);
+            put("edge a" + number, span_.edges[i].a);
+            put("edge b" + number, span_.edges[i].b);
+            put("edge c" + number, span_.edges[i].c);
+        }
+    }
+    void put_normals() {
+        put("b", span_.normal.base);
+        put("u", span_.normal.du);
+        put("v", span_.normal.dv);
+    }
+    void put_depth() {
+        put("z", span_.z);
+        put("dz", span_.dz);
+        put("n", span_.n);
+        put("dn", span_.dn);
+    }
+    void put_all() {
+        put("x", span_.x);
+        put("last", span_.last);
+        put_axis();
+        if (spans_.settings.hit == HitTest::depth) {
+            put_depth();
+        } else {
+            put_plane();
+        }
+        put_normals();
+    }
+    /// The voxel of the span, as the cell stores it; nothing if the polygon does not touch the cell.
+    bool make(CellStore& store) const {
+        return store_voxel(store, span_, spans_.settings, spans_.levels.level, arithmetic_);
+    }
+    void expect_advanced() {
+        const bool passes = span_.x < span_.last;
+        expect("passes", take("passes"), passes);
+        if (!passes) return;
+        Span next = span_;
+        advance(next, arithmetic_);
+        expect("x", take("x"), next.x);
+        const bool depth = spans_.settings.hit == HitTest::depth;
+        if (!depth || spans_.settings.normals == Normals::linear) expect("b", next.normal.base);
+        if (depth) {
+            expect("z", take("z"), next.z);
+            if (spans_.settings.normals == Normals::voxel) expect("n", next.n);
+            return;
+        }
+        expect("c", take("c"), next.plane.c);
+        for (std::size_t i = 0; i < std::size_t(next.edge_count); ++i) {
+            const std::string name = "edge c " + std::to_string(i);
+            expect(name, take(name), next.edges[i].c);
+        }
+    }
+    void expect_run(const Voxel& voxel) const {
+        expect("near level", take("near level"), voxel.near_level);
+        expect("far level", take("far level"), voxel.far_level);
+        expect("near", take("near"), voxel.near);
+        expect("far", take("far"), voxel.far);
+    }
+    void expect_plane(const Voxel& voxel) const {
+        const Projection axes = projection(voxel.drop);
+        expect("plane u", take("plane u"), voxel.plane.n[axes.u]);
+        expect("plane v", take("plane v"), voxel.plane.n[axes.v]);
+        expect("plane c", take("plane c"), voxel.plane.c);
+    }
+    void expect_normals(const Voxel& voxel) const {
+        expect("normal b", voxel.normal.base);
+        expect("normal u", voxel.normal.du);
+        expect("normal v", voxel.normal.dv);
+    }
+    void put_place(const Voxel& voxel) {
+        const dvec2 point = project(voxel.point, voxel.drop);
+        put("near", voxel.near);
+        put("far", voxel.far);
+        put("point u", point.x);
+        put("point v", point.y);
+        put("anchor v", voxel.drop == 2 ? point.y : point.y - voxel.base);
+    }
+
+    SpanDraw spans_;
+    Span span_;
+};
+
+class ForwardTrial : public MicroTrial {
+  public:
+    explicit ForwardTrial(const MicroSetting& s)
+        : MicroTrial(s, forward_program(s), {"load_forward"}), width_(s.extent.width) {}
+
+  private:
+    /// Messages that pass on: spans of other columns, and what all cells latch.
+    void draw(MicroRandom& random) override {
+        column_ = int(random.uniform(0, width_));
+        x_ = random.chance(0.1) ? column_ : int(random.uniform(0, width_));
+        type_ = random.chance(0.5) ? 5 : random.chance(0.5) ? 6 : int(random.uniform(0, 2));
+        put("type", type_);
+        put("x", x_);
+        put("column", column_);
+    }
+    void compare() override { expect("makes", take("makes"), type_ == 5 && x_ == column_); }
+    int width_;
+    int column_ = 0, x_ = 0, type_ = 0;
+};
+
+class AdvanceTrial : public SpanTrial {
+  public:
+    explicit AdvanceTrial(const MicroSetting& s, HitTest rung, Normals normals)
+        : SpanTrial(s, advance_program(s, rung, normals), {}, rung, normals) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        draw_span(random);
+        put_all();
+    }
+    void compare() override { expect_advanced(); }
+};
+
+/// A part, its corners in words: a rectangle, or what one line leaves of another's.
+class CutTrial : public SpanTrial {
+  public:
+    explicit CutTrial(const MicroSetting& s)
+        : SpanTrial(s, cut_program(s), {}, HitTest::edge, Normals::linear), words_(arithmetic_) {}
+
+  private:
+    using N = LoadingWords::Number;
+    void draw(MicroRandom& random) override {
+        do {
+            draw_span(random);
+        } while (span_.edge_count == 0);
+        const N one = words_.number(1);
+        const N far = span_.drop == 2 ? one : words_.number(spans_.extent.depth);
+        corners_ = {{0, 0}, {one, 0}, {one, far}, {0, far}};
+        int edge = int(random.uniform(0, span_.edge_count));
+        const int before = int(random.uniform(0, span_.edge_count));
+        for (int i = 0; i < before; ++i) {
+            const std::vector<Corner<N>> left = cut(corners_, line(i));
+            if (left.empty()) break;
+            corners_ = left;
+            edge = before;
+        }
+        line_ = line(edge);
+        begin_ = random.chance(0.5) ? 0 : 10;
+        put("begin", begin_);
+        put("other", 10 - begin_);
+        put("corners", double(corners_.size()));
+        for (std::size_t i = 0; i < corners_.size(); ++i) {
+            const std::string number = " " + std::to_string(std::size_t(begin_) + i);
+            put_bits("u" + number, corners_[i].u);
+            put_bits("v" + number, corners_[i].v);
+        }
+        put_bits("line a", line_.a);
+        put_bits("line b", line_.b);
+        put_bits("line c", line_.c);
+    }
+    Line<N> line(int edge) const {
+        const EdgeFunction& e = span_.edges[std::size_t(edge)];
+        return {words_.number(e.a), words_.number(e.b), words_.number(e.c) + words_.room()};
+    }
+    /// Sutherland and Hodgman's: the same as in part_in(), which does not tell its corners.
+    std::vector<Corner<N>> cut(const std::vector<Corner<N>>& part, const Line<N>& by) const {
+        std::vector<Corner<N>> kept;
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            const Corner<N>& p = part[i];
+            const Corner<N>& q = part[(i + 1) % part.size()];
+            const N dp = words_.value(by, p);
+            const N dq = words_.value(by, q);
+            if (dp >= 0) kept.push_back(p);
+            if ((dp >= 0) == (dq >= 0) || std::max(dp, dq) == 0) continue;
+            const Corner<N>& in = dp > 0 ? p : q;
+            const Corner<N>& out = dp > 0 ? q : p;
+            kept.push_back({words_.between(in.u, out.u, std::max(dp, dq), std::min(dp, dq)),
+                            words_.between(in.v, out.v, std::max(dp, dq), std::min(dp, dq))});
+        }
+        if (kept.size() < 3) kept.clear();
+        return kept;
+    }
+    void compare() override {
+        const std::vector<Corner<N>> left = cut(corners_, line_);
+        expect("corners", take("corners"), double(left.size()));
+        const auto begin = std::size_t(take("begin"));
+        const auto number = [&](const std::string& name) { return words_.number(take(name)); };
+        for (std::size_t i = 0; i < left.size(); ++i) {
+            const std::string at = " " + std::to_string(begin + i);
+            expect("u" + at, double(number("u" + at)), double(left[i].u));
+            expect("v" + at, double(number("v" + at)), double(left[i].v));
+        }
+    }
+    LoadingWords words_;
+    std::vector<Corner<N>> corners_;
+    Line<N> line_{};
+    int begin_ = 0;
+};
+
+class PartTrial : public SpanTrial {
+  public:
+    explicit PartTrial(const MicroSetting& s)
+        : SpanTrial(s, part_program(s, levels_of(s.extent)), {}, HitTest::edge, Normals::linear) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        draw_span(random);
+        put_axis();
+        put_plane();
+    }
+    void compare() override {
+        const Box column{-span_.slack, dvec3(1, 1, spans_.extent.depth) + span_.slack};
+        const Part part =
+            part_in({span_.plane, span_.drop, span_.edges.data(), span_.edge_count}, column, arithmetic_);
+        expect("made", take("made"), !part.empty());
+        if (part.empty()) return;
+        const dvec2 middle = project(part.middle, span_.drop);
+        expect("corners", take("corners"), part.corners);
+        expect("z low", take("z low"), part.low.z);
+        expect("z high", take("z high"), part.high.z);
+        expect("middle u", take("middle u"), middle.x);
+        expect("middle v", take("middle v"), middle.y);
+        expect("twice area", take("twice area"), 2 * part.area);
+    }
+};
+
+class LevelsTrial : public SpanTrial {
+  public:
+    explicit LevelsTrial(const MicroSetting& s)
+        : SpanTrial(s, levels_program(s, levels_of(s.extent)), {}, HitTest::edge, Normals::linear) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        do {
+            draw_span(random);
+            store_ = CellStore();
+        } while (!make(store_));
+        const Box column{-span_.slack, dvec3(1, 1, spans_.extent.depth) + span_.slack};
+        const Part part =
+            part_in({span_.plane, span_.drop, span_.edges.data(), span_.edge_count}, column, arithmetic_);
+        put_axis();
+        put("slack", span_.slack[span_.drop]);
+        put("z low", part.low.z);
+        put("z high", part.high.z);
+    }
+    void compare() override { expect_run(store_.voxels[0]); }
+    CellStore store_;
+};
+
+/// A part of a voxel, from the voxel that the model makes.
+class VoxelPartTrial : public SpanTrial {
+  protected:
+    VoxelPartTrial(const MicroSetting& s, MicroProgram program, Normals normals)
+        : SpanTrial(s, std::move(program), {}, HitTest::edge, normals) {}
+    void draw_voxel(MicroRandom& random) {
+        do {
+            draw_span(random);
+            store_ = CellStore();
+        } while (!make(store_));
+        put_axis();
+        put_plane();
+    }
+    CellStore store_;
+};
+
+class EdgeOfVoxelTrial : public VoxelPartTrial {
+  public:
+    explicit EdgeOfVoxelTrial(const MicroSetting& s)
+        : VoxelPartTrial(s, edge_of_voxel_program(s), Normals::linear) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        Coverage crossed;
+        do {
+            draw_voxel(random);
+            const Voxel& voxel = store_.voxels[0];
+            crossed = cover({span_.plane, span_.drop, span_.edges.data(), span_.edge_count}, {}, voxel.near,
+                            voxel.far, false, arithmetic_);
+        } while (crossed.crossings == 0);
+        kept_ = std::size_t(random.uniform(0, crossed.crossings));
+        const EdgeFunction& edge = span_.edges[std::size_t(crossed.crossing[kept_])];
+        put("line a", edge.a);
+        put("line b", edge.b);
+        put("line c", edge.c);
+        put("near", store_.voxels[0].near);
+        put("far", store_.voxels[0].far);
+    }
+    void compare() override {
+        const EdgeFunction& edge = store_.edges.at(kept_);
+        expect("held a", take("held a"), edge.a);
+        expect("held b", take("held b"), edge.b);
+        expect("held c", take("held c"), edge.c);
+    }
+    std::size_t kept_ = 0;
+};
+
+class PlaneOfVoxelTrial : public VoxelPartTrial {
+  public:
+    explicit PlaneOfVoxelTrial(const MicroSetting& s)
+        : VoxelPartTrial(s, plane_of_voxel_program(s), Normals::linear) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        draw_voxel(random);
+        put_place(store_.voxels[0]);
+    }
+    void compare() override { expect_plane(store_.voxels[0]); }
+};
+
+class NormalOfVoxelTrial : public VoxelPartTrial {
+  public:
+    NormalOfVoxelTrial(const MicroSetting& s, Normals normals)
+        : VoxelPartTrial(s, normal_of_voxel_program(s, normals), normals) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        draw_voxel(random);
+        put_normals();
+        put_place(store_.voxels[0]);
+    }
+    void compare() override { expect_normals(store_.voxels[0]); }
+};
+
+class VoxelTrial : public SpanTrial {
+  public:
+    VoxelTrial(const MicroSetting& s, HitTest rung, Normals normals, MicroCost cost)
+        : SpanTrial(s, voxel_program(s, levels_of(s.extent), rung, normals), std::move(cost), rung, normals) {
+    }
+
+  private:
+    void draw(MicroRandom& random) override {
+        draw_span(random);
+        put_all();
+    }
+    void compare() override {
+        CellStore store;
+        const bool made = make(store);
+        expect("made", take("made"), made);
+        if (made) expect_voxel(store);
+        expect_advanced();
+    }
+    void expect_voxel(const CellStore& store) {
+        const Voxel& voxel = store.voxels[0];
+        const HitTest rung = spans_.settings.hit;
+        expect_run(voxel);
+        expect_normals(voxel);
+        const dvec2 point = project(voxel.point, voxel.drop);
+        expect("point u", take("point u"), point.x);
+        expect("point v", take("point v"), point.y);
+        if (rung != HitTest::depth) expect("twice area", take("twice area"), 2 * voxel.area);
+        if (rung >= HitTest::plane) expect_plane(voxel);
+        if (rung != HitTest::edge) return;
+        expect("crossings", take("crossings"), double(store.edges.size()));
+        for (std::size_t i = 0; i < store.edges.size(); ++i) {
+            const std::string number = " " + std::to_string(i);
+            expect("kept a" + number, take("kept a" + number), store.edges[i].a);
+            expect("kept b" + number, take("kept b" + number), store.edges[i].b);
+            expect("kept c" + number, take("kept c" + number), store.edges[i].c);
+        }
+    }
+};
+
+}  // namespace
+
+TrialList loading_trials(const MicroSetting& s) {
+    TrialList all;
+    all.push_back(std::make_unique<ForwardTrial>(s));
+    all.push_back(std::make_unique<AdvanceTrial>(s, HitTest::edge, Normals::linear));
+    all.push_back(std::make_unique<CutTrial>(s));
+    all.push_back(std::make_unique<PartTrial>(s));
+    all.push_back(std::make_unique<LevelsTrial>(s));
+    all.push_back(std::make_unique<EdgeOfVoxelTrial>(s));
+    all.push_back(std::make_unique<PlaneOfVoxelTrial>(s));
+    all.push_back(std::make_unique<NormalOfVoxelTrial>(s, Normals::linear));
+    all.push_back(std::make_unique<NormalOfVoxelTrial>(s, Normals::voxel));
+    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::depth, Normals::voxel, MicroCost{}));
+    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::interval, Normals::linear, MicroCost{}));
+    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::plane, Normals::linear, MicroCost{}));
+    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::edge, Normals::linear, MicroCost{"load_voxel"}));
+    return all;
+}
+
+}  // namespace raycell
