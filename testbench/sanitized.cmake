@@ -9,7 +9,7 @@ if(NOT RAYCELL_SANITIZE)
 
   file(GLOB model_sources CONFIGURE_DEPENDS ../model/*/*.cpp)
   list(FILTER model_sources EXCLUDE REGEX "/truth/")
-  raycell_library(raycell_sanitized ${model_sources} microcode/trials.cpp ../scenes/*.cpp)
+  raycell_library(raycell_sanitized ${model_sources} microcode/*trials.cpp microcode/counts.cpp ../scenes/*.cpp)
   target_link_libraries(raycell_sanitized PUBLIC glm::glm PRIVATE tinyobjloader::tinyobjloader_double)
   raycell_sanitized(raycell_sanitized)
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "testbench/microcode/trial_lists.hpp"
+
 namespace raycell {
 
 std::uint32_t table_cycles(const CostTable& costs, const MicroTrial& trial) {
@@ -38,8 +40,7 @@ struct Counter {
         return name;
     }
 
-    /// Adds the programs of `o` whose entries are, or are not, operators.
-    void count(const OperatorSettings& o, bool operators) {
+    MicroSetting setting_of(const OperatorSettings& o) const {
         MicroSetting setting;
         setting.numbers.operators = o;
         setting.extent = {128, 128, 200, 0.2};
@@ -47,11 +48,22 @@ struct Counter {
         for (const Datapath& path : datapaths(setting.numbers.word_bits, wide)) {
             if (path.name == datapath) setting.datapath = path;
         }
+        return setting;
+    }
+
+    /// Whether an entry is counted into the table: not those of loading.
+    static bool in_table(const std::string& entry) {
+        const std::vector<std::string> counted = CostTable::counted();
+        return std::find(counted.begin(), counted.end(), entry) != counted.end();
+    }
+
+    /// Adds the programs of `o` whose entries are, or are not, operators.
+    void count(const OperatorSettings& o, bool operators) {
         std::map<std::string, double> sums;
-        for (const auto& trial : micro_trials(setting)) {
+        for (const auto& trial : micro_trials(setting_of(o))) {
             const MicroCost& cost = trial->cost();
             const std::string name = method_name(cost.entry, o);
-            if (name.empty() || (name != cost.entry) != operators || entries.count(name) != 0) continue;
+            if (!in_table(name) || (name != cost.entry) != operators || entries.count(name) != 0) continue;
             double own = run_trial(*trial, runs, seed).mean;
             if (cost.reciprocals) own -= cost.reciprocals * double(entries.at(method_name("reciprocal", o)));
             if (cost.roots) own -= cost.roots * double(entries.at(method_name("root", o)));
@@ -81,6 +93,17 @@ std::map<std::string, std::uint32_t> count_costs(const std::string& datapath, st
     counter.count(tables, false);
     counter.entries["compare_depth"] = counter.entries.at("compare_interval");  // the same program
     return counter.entries;
+}
+
+std::map<std::string, std::uint32_t> count_loading(const std::string& datapath, std::uint64_t runs,
+                                                   std::uint64_t seed) {
+    std::map<std::string, std::uint32_t> cycles;
+    for (const auto& trial : loading_trials(Counter{datapath, runs, seed, {}}.setting_of({}))) {
+        const std::string& name = trial->program().name;
+        if (name == "forward" || name.rfind("voxel ", 0) == 0)
+            cycles[name] = std::uint32_t(std::lround(run_trial(*trial, runs, seed).mean));
+    }
+    return cycles;
 }
 
 }  // namespace raycell

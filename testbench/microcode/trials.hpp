@@ -41,6 +41,11 @@ struct MicroCost {
     int reciprocals = 0;
     int roots = 0;
     int powers = 0;
+
+    bool has_operators() const {
+        return reciprocals + roots + powers > 0 || entry == "reciprocal" || entry == "root" ||
+               entry == "power";
+    }
 };
 
 /// One program on one datapath.
