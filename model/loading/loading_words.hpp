@@ -67,9 +67,9 @@ struct LoadingWords {
     Number room() const { return room_; }
     Number number(double x) const { return Number(std::floor(x * per_step_)); }
     double back(Number n) const { return double(n) * step_; }
-    Number product(Number a, Number b) const { return Number(__int128(a) * b >> fraction_); }
+    Number product(Number a, Number b) const { return cut_off(__int128(a) * b); }
     Number value(const Line<Number>& line, const Corner<Number>& p) const {
-        return line.c + Number((__int128(line.a) * p.u + __int128(line.b) * p.v) >> fraction_);
+        return line.c + cut_off(__int128(line.a) * p.u + __int128(line.b) * p.v);
     }
     Number between(Number from, Number to, Number d_from, Number d_to) const {
         return from + Number(__int128(to - from) * quotient(d_from, d_from - d_to) >> quotient_);
@@ -98,6 +98,11 @@ struct LoadingWords {
         for (; rest < 0; rest += b) --q;
         for (; rest >= b; rest -= b) ++q;
         return q;
+    }
+
+    /// A sum of products of words as a word. Short words in a very deep cube have no fraction at all.
+    Number cut_off(__int128 sum) const {
+        return fraction_ >= 0 ? Number(sum >> fraction_) : Number(sum * (__int128(1) << -fraction_));
     }
 
     int fraction_;

@@ -7,8 +7,9 @@
 namespace raycell {
 namespace {
 
-/// Four corners of a rectangle, and one more for each line that cuts it.
-constexpr int most_corners = 4 + 4 + 2;
+/// Four corners of a rectangle, and one more for each line that cuts it; room for a second one, since a part
+/// whose corners were cut off may be slightly concave.
+constexpr int most_corners = 4 + 2 * (4 + 2);
 
 template <typename Ops>
 class Clipper {

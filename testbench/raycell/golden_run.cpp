@@ -7,7 +7,7 @@
 namespace raycell {
 namespace {
 
-constexpr int most_cells = 256;  // three files each, all open at once
+constexpr int most_recorded = 256;  // three files each, all open at once
 
 /// PREFIX.golden_X_Y, without the ending.
 std::string stem_of(int x, int y) { return ".golden_" + std::to_string(x) + "_" + std::to_string(y); }
@@ -27,9 +27,9 @@ void check_golden(const RenderOptions& options) {
     int cells = 0;
     for (const CellRange& range : options.golden)
         cells += (range.x1 - range.x0 + 1) * (range.y1 - range.y0 + 1);
-    if (cells > most_cells) {
+    if (cells > most_recorded) {
         throw UsageError("--golden: " + std::to_string(cells) + " cells, with files for each; expected " +
-                         std::to_string(most_cells) + " at most");
+                         std::to_string(most_recorded) + " at most");
     }
 }
 
