@@ -201,6 +201,7 @@ MicroProgram voxel_program(const MicroSetting& setting, const DepthLevels& level
         writer.cross(rung == HitTest::edge);
     }
     writer.anchor();
+    if (rung == HitTest::interval) writer.slopes();
     if (rung >= HitTest::plane) writer.plane();
     writer.normal(normals, rung);
     const RegisterIndex made = a.reg("made", 2, 0);

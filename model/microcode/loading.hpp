@@ -47,6 +47,7 @@ class LoadingWriter {
     /// Rung `depth`: the run and the middle are the span's depth at the cell's centre.
     void centre();
     void anchor();
+    void slopes();
     void plane();
     void normal(Normals normals, HitTest rung);
 
@@ -100,7 +101,7 @@ class LoadingWriter {
     RegisterIndex middle_u_, middle_v_, area_, z_low_, z_high_;
     // The voxel.
     RegisterIndex near_level_, far_level_, near_, far_, cube_end_, level_step_, last_level_;
-    RegisterIndex held_u_, held_v_, anchor_v_, size_, other_size_, scale_, to_normal_;
+    RegisterIndex held_u_, held_v_, anchor_v_, plane_u_, plane_v_, size_, other_size_, scale_, to_normal_;
     Vector normal_base_, normal_du_, normal_dv_, near_base_;
     RegisterIndex crossings_, held_a_, held_b_, held_c_;
 };

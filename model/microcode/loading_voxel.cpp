@@ -207,21 +207,26 @@ void LoadingWriter::anchor() {
     a_.label("anchored");
 }
 
+/// The plane's slopes in words.
+void LoadingWriter::slopes() {
+    plane_u_ = a_.reg("plane u", formats_.unit.bits(), formats_.unit.fraction_bits());
+    plane_v_ = a_.reg("plane v", formats_.unit.bits(), formats_.unit.fraction_bits());
+    a_.round(plane_u_, nu_);
+    a_.round(plane_v_, nv_);
+}
+
 /// The plane's slopes and offset in words; the offset is right at the anchor.
 void LoadingWriter::plane() {
     const Format& unit = formats_.unit;
     const int fraction = std::max(f_, unit.fraction_bits());
     const int bits = std::max(fraction - unit.fraction_bits() + 2, 4);
-    const RegisterIndex u = a_.reg("plane u", unit.bits(), unit.fraction_bits());
-    const RegisterIndex v = a_.reg("plane v", unit.bits(), unit.fraction_bits());
     const RegisterIndex offset = a_.reg("plane c", formats_.offset.bits(), formats_.offset.fraction_bits());
     const RegisterIndex nz = slope("nz");
     const RegisterIndex lost_u = a_.reg("lost u", bits, fraction);
     const RegisterIndex lost_v = a_.reg("lost v", bits, fraction);
-    a_.round(u, nu_);
-    a_.round(v, nv_);
-    a_.difference(lost_u, u, nu_);
-    a_.difference(lost_v, v, nv_);
+    slopes();
+    a_.difference(lost_u, plane_u_, nu_);
+    a_.difference(lost_v, plane_v_, nv_);
     a_.move(nz, nv_);
     a_.jump_zero(drop_z_, "nz");
     a_.move(nz, one_length_);

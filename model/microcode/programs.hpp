@@ -111,7 +111,7 @@ struct DepthLevels {
 // Loading. A span, below: "drop x", "drop z" (1: that axis of the plane is dropped; both 0: y), negative (1:
 // the normal's component there is -1), nu, nv, c (its other two, its offset), slack, edges (how many), "edge
 // a 0", "edge b 0", "edge c 0" and so on; normals: bx to bz, ux to uz, vx to vz. At rung `depth`: "drop x",
-// "drop z", z, dz, nx to nz, dnx to dnz, normals.
+// "drop z", z, dz, nx to nz, dnx to dnz, normals; its slopes are words that are kept as they are.
 
 /// Whether a load message makes a voxel in a cell. In: type (5: a span), x (of the span), column. Out: makes.
 MicroProgram forward_program(const MicroSetting& setting);

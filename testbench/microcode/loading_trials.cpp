@@ -37,7 +37,7 @@ class SpanDraw {
     Span draw(MicroRandom& random) {
         for (;;) {
             std::optional<Span> span = try_once(random);
-            if (span && fits(*span)) return *span;
+            if (span) return *span;
         }
     }
 
@@ -47,16 +47,6 @@ class SpanDraw {
     Arithmetic arithmetic;
 
   private:
-    /// Fields that turn fast may leave the range of loading words away from the origin: there is no such
-    /// message.
-    bool fits(const Span& span) const {
-        const Format& word = arithmetic.formats().loading;
-        for (int i = 0; i < 3; ++i) {
-            if (span.normal.base[i] < word.least() || span.normal.base[i] > word.most()) return false;
-        }
-        return true;
-    }
-
     std::optional<Span> try_once(MicroRandom& random) {
         const double size = random.chance(0.1) ? 40 : std::exp2(random.uniform(-1, 3));
         const dvec3 centre(random.uniform(0, extent.width), random.uniform(0, extent.height),
@@ -171,10 +161,13 @@ class SpanTrial : public MicroTrial {
         expect("near", take("near"), voxel.near);
         expect("far", take("far"), voxel.far);
     }
-    void expect_plane(const Voxel& voxel) const {
+    void expect_slopes(const Voxel& voxel) const {
         const Projection axes = projection(voxel.drop);
         expect("plane u", take("plane u"), voxel.plane.n[axes.u]);
         expect("plane v", take("plane v"), voxel.plane.n[axes.v]);
+    }
+    void expect_plane(const Voxel& voxel) const {
+        expect_slopes(voxel);
         expect("plane c", take("plane c"), voxel.plane.c);
     }
     void expect_normals(const Voxel& voxel) const {
@@ -455,6 +448,7 @@ class VoxelTrial : public SpanTrial {
         expect("point u", take("point u"), point.x);
         expect("point v", take("point v"), point.y);
         if (rung != HitTest::depth) expect("twice area", take("twice area"), 2 * voxel.area);
+        if (rung == HitTest::interval) expect_slopes(voxel);
         if (rung >= HitTest::plane) expect_plane(voxel);
         if (rung != HitTest::edge) return;
         expect("crossings", take("crossings"), double(store.edges.size()));
