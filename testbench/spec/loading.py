@@ -1,0 +1,44 @@
+"""The loading unit: a message at a time, from the west to the east."""
+
+from links import InBuffer
+from rays import EAST, WEST
+
+
+class LoadMessage:
+    """setup, features, span or end_of_scene, and its words"""
+
+    def __init__(self, kind, words):
+        self.kind, self.text = kind, words
+
+    def words(self):
+        return self.text
+
+
+class Loading:
+    def start_loading(self):
+        # In the first column over a link of its own.
+        self.load_input = self.inputs[WEST, 0] if WEST in self.outputs and self.x > 0 else InBuffer()
+        self.loading, self.load_done = None, 0
+
+    def load(self, now):
+        buffer = self.load_input
+        item = buffer.head(now)
+        if item is None:
+            return
+        span = item.kind == "span"
+        makes = span and item.x1 == self.x
+        if self.loading is not item:
+            self.loading = item
+            self.load_done = now + self.S.cost("load_voxel" if makes else "load_forward")
+            self.moved += 1
+        ends = (item.last if span else self.S.width - 1) == self.x
+        if now < self.load_done or not (ends or self.outputs[EAST].can_send(0, now)):
+            return
+        if makes:
+            self.make_voxel(item)
+        buffer.messages.pop(0)
+        self.loading = None
+        self.watcher.take(now, WEST if self.x > 0 else "load", 0)
+        self.moved += 1
+        if not ends:
+            self.send(EAST, 0, item, now)
