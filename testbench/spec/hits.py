@@ -54,20 +54,14 @@ def test_run(ray, t_end, z1, voxel, S):
     f, z0, dz = S.formats, ray.p[2], ray.d[2]
     if (z0 < voxel.near and z1 < voxel.near) or (z0 > voxel.far and z1 > voxel.far):
         return None
+    if S.option["hit"] == "depth" and z0 >= voxel.far and z1 >= voxel.far:
+        return None                                 # the far end of a level is the next one's
     if voxel.near <= z0 <= voxel.far:
         t = f.distance.word(0)
     else:
         end = voxel.near if dz > 0 else voxel.far
         t = clamp(f.distance.hold((end - z0) * S.operators.reciprocal(dz)), f.distance.word(0), t_end)
-    if S.option["hit"] == "depth":
-        low, high = (z0, z1) if z0 < z1 else (z1, z0)
-        if not level_of(low, S) <= voxel.near_level <= level_of(high, S):
-            return None
     return t
-
-
-def level_of(z, S):
-    return int(z.raw / 2 ** z.frac / (float(S.exact_depth) / S.option["depth"]) // 1)
 
 
 def test_plane(ray, t_end, _, voxel, S):
@@ -115,13 +109,13 @@ def inside_mask(point, room, voxel, S):
     if voxel.drop != 2:                             # z as a share of the run
         per_run = S.operators.reciprocal(voxel.far - voxel.near)
         place[2] = f.field.hold((point[2] - voxel.near) * per_run)
-        rooms[2] = room * per_run
+        rooms[2] = f.field.hold(room * per_run)
     bit = []
     for k, axis in enumerate([i for i in range(3) if i != voxel.drop]):
         low, high = voxel.window[2 * k], voxel.window[2 * k + 1]
         per_window = S.operators.reciprocal(Value(high - low))
         at = f.field.hold((place[axis] * WINDOW - low) * per_window)
-        around = rooms[axis] * WINDOW * per_window
+        around = f.field.hold(rooms[axis] * WINDOW * per_window)
         if at < -around or at > 1 + around:
             return False
         bit.append(clamp(shifted(at.raw * 8, at.frac, False), 0, 7))

@@ -2,6 +2,7 @@
 
 from links import InBuffer
 from rays import EAST, WEST
+from voxels import store_voxel
 
 
 class LoadMessage:
@@ -35,7 +36,9 @@ class Loading:
         if now < self.load_done or not (ends or self.outputs[EAST].can_send(0, now)):
             return
         if makes:
-            self.make_voxel(item)
+            store_voxel(self.S, self.voxels, item)
+            if not ends:
+                item.advance()
         buffer.messages.pop(0)
         self.loading = None
         self.watcher.take(now, WEST if self.x > 0 else "load", 0)

@@ -165,12 +165,12 @@ def dot(form, a, b):
 
 
 def normalise(v, S):
-    """(direction, length) of a vector that is not 0."""
+    """(direction, length) of a vector that is not 0; the length is a word of the format reach."""
     m, exponent = to_mantissas(v, S.formats.mantissa)
     squared = dot(S.formats.field, m, m)
     inverse = S.operators.inverse_root(squared)
     length = squared * inverse
-    return [S.formats.unit.hold(x * inverse) for x in m], Value(length.raw, length.frac - exponent)
+    return [S.formats.unit.hold(x * inverse) for x in m], S.formats.reach.hold(Value(length.raw, length.frac - exponent))
 
 
 def square_root(x, S):

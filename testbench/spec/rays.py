@@ -2,7 +2,7 @@
 
 from hits import nearest_hit
 from operators import Operators, normalise
-from words import ZERO, Formats, Value, clamp, exact, hold_place
+from words import ZERO, Formats, Value, clamp, exact, hold_place, way_to
 
 EAST, SOUTH, WEST, NORTH = range(4)
 SIDES = ["east", "south", "west", "north"]
@@ -20,12 +20,12 @@ class Machine:
     def __init__(self, option, columns, rows, depth, eye, beyond):
         """depth: a Fraction; eye: three Values, None at infinity."""
         self.option, self.width, self.height = option, columns, rows
-        self.exact_depth = depth
         f = self.formats = Formats(option["word-bits"], option["rounding"] == "nearest", columns, rows, depth,
                                    option["depth"])
         self.operators = Operators(option)
         self.depth = f.depth.hold(exact(depth))
-        self.eye = None if eye is None else hold_place(eye, f.W)
+        self.level = exact(depth / option["depth"])
+        self.eye = None if eye is None else hold_place(eye, f)
         self.beyond = beyond if option["exterior"] == "host" else [False] * 6
         offset = option["normal-offset"]
         self.normal_offset = f.unit.hold(exact(offset) if offset >= 0 else f.normal_offset)
@@ -98,7 +98,8 @@ def primary_ray(S, x, y):
     if S.eye is None:
         d = [f.nothing, f.nothing, f.one]
     else:
-        d, _ = normalise([Value(2 * x + 1, 1) - S.eye[0], Value(2 * y + 1, 1) - S.eye[1], -S.eye[2]], S)
+        way = way_to(S.eye, [Value(2 * x + 1, 1), Value(2 * y + 1, 1), ZERO], f)
+        d, _ = normalise([-c for c in way], S)
     ray.set_direction(d, S)
     return ray
 
@@ -151,9 +152,7 @@ class Visit:
     def cycles(self, S):
         rung = S.option["hit"]
         run = S.cost("compare_depth" if rung == "depth" else "compare_interval")
-        test = S.cost("reciprocal")
-        if rung in ("plane", "mask", "edge"):
-            test += S.cost("compare_" + rung)
+        test = S.cost("reciprocal") + S.cost("compare_" + rung if rung in ("plane", "mask", "edge") else "enter_run")
         return S.cost("walk_step") + self.runs * run + self.tests * test + self.edges * S.cost("per_edge")
 
 

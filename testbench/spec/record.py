@@ -5,6 +5,7 @@ from fractions import Fraction
 
 from loading import LoadMessage
 from rays import SIDES, Machine, Material, Source
+from voxels import Span
 from wire import TYPES, Wire
 from words import exact, read_floating
 
@@ -152,5 +153,5 @@ class Record:
     def message(self, event):
         """What an `in` line brings, for the cell's buffer."""
         if event.fields is None:
-            return LoadMessage(event.name, event.words)
+            return Span(self.S, event.words) if event.name == "span" else LoadMessage(event.name, event.words)
         return self.wire.message(event.name, event.fields, event.identity)

@@ -3,7 +3,7 @@
 from hits import project
 from operators import dot, normalise, square_root
 from rays import KINDS, Ray, point_at
-from words import Value, ZERO, clamp, exact
+from words import Value, ZERO, clamp, exact, way_to
 
 
 class Setup:
@@ -25,10 +25,10 @@ class Setup:
         self.children = [reflected(S, self) if self.sends[0] else None, refracted(S, self) if self.sends[1] else None]
 
     def cycles(self, S):
-        root, start = S.cost("root"), 2 * S.cost("reciprocal")
-        cycles = S.cost("shade_setup") + len(S.sources) * (S.cost("source_view") + root)
+        root, start = S.cost("root"), S.cost("ray_start") + 2 * S.cost("reciprocal")
+        cycles = S.cost("shade_setup") + root + len(S.sources) * (S.cost("source_view") + root)
         if S.option["normals"] == "linear":
-            cycles += S.cost("normal_linear") + root
+            cycles += S.cost("normal_linear")
         if S.option["shadows"] == "per-hit":
             cycles += len(self.facing) * start
         if self.sends[0]:
@@ -57,9 +57,9 @@ def worth(S, ray, share):
 def view(S, source, position, normal):
     """(direction, distance, cosine) of a source; `normal` None: no cosine."""
     f = S.formats
-    way = [a - b for a, b in zip(source.position, position)]
+    way = way_to(source.position, position, f)
     if all(c.raw == 0 for c in way):                # on the surface
-        return [f.nothing, f.nothing, f.one], ZERO, f.nothing
+        return [f.nothing, f.nothing, f.one], f.reach.word(0), f.nothing
     direction, distance = normalise(way, S)
     return direction, distance, normal and dot(f.unit, normal, direction)
 
@@ -141,9 +141,8 @@ def secondary_ray(S, parent, s, voxel, child, slot, home):
 
 def shadow_ray(S, parent, s, voxel, source, slot, home):
     ray = child_ray(S, "shadow", source, parent.pixel, parent.branch, parent.generation, slot, home)
-    direction, distance, _ = s.views[source]
+    direction, ray.reach, _ = s.views[source]
     ray.set_direction(direction, S)
-    ray.reach = S.formats.reach.hold(distance)
     leave_surface(S, ray, s.local, voxel)
     return ray
 
@@ -153,8 +152,7 @@ def voxel_shadow_ray(S, voxels, index, source, kind, home):
     voxel, (x, y) = voxels[index], home
     ray = child_ray(S, kind, source, y * S.width + x, index, 0, index, home)
     point = voxel.point
-    direction, distance, _ = view(S, S.sources[source], [point[0] + x, point[1] + y, point[2]], None)
-    ray.reach = S.formats.reach.hold(distance)
+    direction, ray.reach, _ = view(S, S.sources[source], [point[0] + x, point[1] + y, point[2]], None)
     ray.set_direction(direction, S)
     leave_surface(S, ray, point, voxel)
     return ray

@@ -139,8 +139,14 @@ def name_of(message):
 def load_lengths(S):
     """Bits of load messages, by kind."""
     f, W = S.formats, S.formats.W
-    place, L = 3 * (W + 12) + 6, f.loading.bits
+    place, L, rung = 3 * (W + 12) + 6, f.loading.bits, S.option["hit"]
     features = 3 + 6 * (f.feature.bits - 1) + f.shine_bits + f.ior.bits - 1 + 1
-    span = 3 + 20 + 2 * bits_to(S.width) + 5 * L + (4 * L + 3) + 9 * L + (12 * L + 3)
-    return {"setup": lambda _: 3 + place + 6 + len(S.sources) * (place + 3 * W), "features": lambda _: features,
-            "span": lambda _: span, "end_of_scene": lambda _: 3}
+    setup = 3 + place + 1 + 6 + 3 * W + 16 + 16 + 6 + 7 + len(S.sources) * (place + 3 * W)
+    span = 3 + 20 + 2 * bits_to(S.width) + (6 * L if S.option["display"] == "gouraud" else 0)
+    edge = 0
+    if rung == "depth":
+        span += 2 * L + (6 * L if S.option["normals"] == "voxel" else 2 + 9 * L)
+    else:
+        span, edge = span + 13 * L + 6, 3 * L
+    return {"setup": lambda _: setup, "features": lambda _: features,
+            "span": lambda item: span + edge * len(item.edges), "end_of_scene": lambda _: 3}

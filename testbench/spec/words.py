@@ -154,7 +154,9 @@ class Formats:
         self.mantissa = Format(1, W - 1, nearest)
         self.feature = Format(3, min(W, 12) + longer - 2)
         self.ior = Format(3, min(W, 16) + longer - 2)
+        self.array_exponent = scene_bits - 3        # coordinates of the array are below 2 to this power
         self.loading = Format(scene_bits, W + 16 - scene_bits)
+        self.share = Format(4, W + 11, nearest)     # a point, as a share of a place's power of two
         self.shine_bits = 12 + longer
         self.one = self.unit.word(1 << F)
         self.nothing = self.unit.word(0)
@@ -187,9 +189,20 @@ def to_mantissas(v, form):
     return [form.hold(Value(x.raw, x.frac + exponent)) for x in v], exponent
 
 
-def hold_place(place, W):
+def place_exponent(place, f):
+    """e: a place's coordinates are below 2^e, and so are those of the array."""
+    return max([f.array_exponent] + [1 + leading_exponent(x) for x in place if x.raw])
+
+
+def hold_place(place, f):
     """A place far away: three mantissas of W + 12 bits and one exponent."""
-    if all(x.raw == 0 for x in place):
-        return [ZERO] * 3
-    words, exponent = to_mantissas(place, Format(1, W + 11))
-    return [Value(m.raw, m.frac - exponent) for m in words]
+    exponent = place_exponent(place, f)
+    form = Format(1, f.W + 11)
+    return [Value(form.hold(Value(x.raw, x.frac + exponent)).raw, form.f - exponent) for x in place]
+
+
+def way_to(place, point, f):
+    """From a point in the array to a place: the point is rounded to the last bit of the place's mantissas."""
+    exponent = place_exponent(place, f)
+    rounded = [Value(f.share.hold(Value(x.raw, x.frac + exponent)).raw, f.share.f - exponent) for x in point]
+    return [a - b for a, b in zip(place, rounded)]
