@@ -6,10 +6,11 @@ from voxels import store_voxel
 
 
 class LoadMessage:
-    """setup, features, span or end_of_scene, and its words"""
+    """setup, features or end_of_scene: passed on as it is. `number`: of the object that features are of."""
 
-    def __init__(self, kind, words):
-        self.kind, self.text = kind, words
+    def __init__(self, kind, words, bits):
+        self.kind, self.text, self.bits = kind, words, bits
+        self.number = int(words[0]) if kind == "features" else None
 
     def words(self):
         return self.text
@@ -20,6 +21,7 @@ class Loading:
         # In the first column over a link of its own.
         self.load_input = self.inputs[WEST, 0] if WEST in self.outputs and self.x > 0 else InBuffer()
         self.loading, self.load_done = None, 0
+        self.object = None                          # whose features have come last
 
     def load(self, now):
         buffer = self.load_input
@@ -36,9 +38,11 @@ class Loading:
         if now < self.load_done or not (ends or self.outputs[EAST].can_send(0, now)):
             return
         if makes:
-            store_voxel(self.S, self.voxels, item)
+            store_voxel(self.S, self.voxels, item, self.object)
             if not ends:
                 item.advance()
+        if item.kind == "features":
+            self.object = item.number
         buffer.messages.pop(0)
         self.loading = None
         self.watcher.take(now, WEST if self.x > 0 else "load", 0)

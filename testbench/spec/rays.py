@@ -26,6 +26,7 @@ class Machine:
         self.depth = f.depth.hold(exact(depth))
         self.level = exact(depth / option["depth"])
         self.eye = None if eye is None else hold_place(eye, f)
+        self.faces = beyond
         self.beyond = beyond if option["exterior"] == "host" else [False] * 6
         offset = option["normal-offset"]
         self.normal_offset = f.unit.hold(exact(offset) if offset >= 0 else f.normal_offset)

@@ -4,41 +4,71 @@ A span's words are of the format `loading`; here they are plain integers in unit
 fraction bits), since sums of them are cut off at that bit."""
 
 from hits import Voxel, WINDOW
+from load_wire import FIELD_OF_NORMALS, LOAD_TYPES
 from words import Value, clamp
 
-FIELDS = ["polygon", "object", "x1", "xr", "drop", "nx", "ny", "nz", "c", "slack_x", "slack_y", "slack_z",
-          "n0x", "n0y", "n0z", "nux", "nuy", "nuz", "nvx", "nvy", "nvz", "z", "dz", "ncx", "ncy", "ncz",
-          "dncx", "dncy", "dncz", "red", "green", "blue", "d_red", "d_green", "d_blue"]
 MASK = 8                                            # sub-cells of a mask, along each axis
 
 
+def span_names(option):
+    """The words of a span in a record, but for edges and colours."""
+    names = ["polygon", "x1", "xr"]
+    if option["hit"] != "depth":
+        return names + ["axis", "nx", "ny", "nz", "c", "slack"] + FIELD_OF_NORMALS + ["edges"]
+    if option["normals"] == "voxel":
+        return names + ["z", "dz", "nx", "ny", "nz", "dnx", "dny", "dnz"]
+    return names + ["z", "dz", "axis"] + FIELD_OF_NORMALS
+
+
 class Span:
-    """A part of a polygon in a row of cells, relative to the corner of column x1."""
+    """A part of a polygon in a row of cells, relative to the corner of column x1: the words of its message."""
     kind = "span"
 
     def __init__(self, S, words):
-        self.S = S
-        numbers = [int(word) for word in words]
-        fields = dict(zip(FIELDS, numbers))
-        def three(*names):
-            return [fields[name] for name in names]
-        self.polygon, self.object, self.x1, self.last, self.drop = numbers[:5]
-        self.n, self.c = three("nx", "ny", "nz"), fields["c"]
-        self.slacks = three("slack_x", "slack_y", "slack_z")
-        self.normal, self.du, self.dv = [three(*(v + axis for axis in "xyz")) for v in ("n0", "nu", "nv")]
-        self.z, self.dz = fields["z"], fields["dz"]
-        self.centre, self.d_centre = three("ncx", "ncy", "ncz"), three("dncx", "dncy", "dncz")
-        self.colour, self.d_colour = three("red", "green", "blue"), three("d_red", "d_green", "d_blue")
-        rest = numbers[len(FIELDS):]
-        if len(rest) != 1 + 3 * rest[0]:
-            raise ValueError(f"a span of {rest[0]} edges has {len(numbers)} words")
-        self.edges = [rest[1 + i:4 + i] for i in range(0, 3 * rest[0], 3)]
+        self.S, self.names = S, span_names(S.option)
+        fields = dict(zip(self.names, (int(word) for word in words)))
+        def take(*names):
+            return [fields.get(name, 0) for name in names]
+        self.polygon, self.x1, self.last, self.drop = take("polygon", "x1", "xr", "axis")
+        self.n, (self.c, self.slack) = take("nx", "ny", "nz"), take("c", "slack")
+        self.normal, self.du, self.dv = (take(*FIELD_OF_NORMALS[i:i + 3]) for i in (0, 3, 6))
+        self.z, self.dz = take("z", "dz")
+        self.centre, self.d_centre = [0] * 3, [0] * 3
+        if S.option["hit"] == "depth":              # it has no plane: one that faces the viewer stands for it
+            self.centre, self.d_centre = self.n, take("dnx", "dny", "dnz")
+            self.n = [0, 0, 1 << S.formats.loading.f]
+            if "axis" not in fields:
+                self.drop = 2
+        rest = [int(word) for word in words[len(self.names):]]
+        count = 3 * fields.get("edges", 0)
+        self.edges = [rest[i:i + 3] for i in range(0, count, 3)]
+        colours = rest[count:]
+        if len(colours) != (6 if S.option["display"] == "gouraud" else 0) or len(words) < len(self.names):
+            raise ValueError(f"a span does not have {len(words)} words")
+        self.colour, self.d_colour = colours[:3], colours[3:]
 
     def words(self):
-        numbers = [self.polygon, self.object, self.x1, self.last, self.drop, *self.n, self.c, *self.slacks, *self.normal,
-                   *self.du, *self.dv, self.z, self.dz, *self.centre, *self.d_centre, *self.colour, *self.d_colour,
-                   len(self.edges)]
-        return [str(number) for number in numbers + [word for edge in self.edges for word in edge]]
+        plane = self.centre if self.S.option["hit"] == "depth" else self.n
+        values = dict(zip(FIELD_OF_NORMALS, self.normal + self.du + self.dv), polygon=self.polygon, x1=self.x1,
+                      xr=self.last, axis=self.drop, c=self.c, slack=self.slack, z=self.z, dz=self.dz,
+                      edges=len(self.edges))
+        values.update(zip(("nx", "ny", "nz", "dnx", "dny", "dnz"), plane + self.d_centre))
+        numbers = [values[name] for name in self.names] + [word for edge in self.edges for word in edge]
+        return [str(number) for number in numbers + self.colour + self.d_colour]
+
+    def wire_values(self):
+        """In the order of the wires."""
+        values = [LOAD_TYPES["span"], self.polygon, self.x1, self.last]
+        option, normals = self.S.option, self.normal + self.du + self.dv
+        if option["hit"] != "depth":
+            u, v = self.axes()
+            values += [self.drop, int(self.n[self.drop] < 0), self.n[u], self.n[v], self.c, self.slack]
+            values += normals + [len(self.edges)] + [word for edge in self.edges for word in edge]
+        elif option["normals"] == "voxel":
+            values += [self.z, self.dz] + self.centre + self.d_centre
+        else:
+            values += [self.z, self.dz, self.drop] + normals
+        return values + self.colour + self.d_colour
 
     def axes(self):
         return [axis for axis in range(3) if axis != self.drop]
@@ -96,7 +126,7 @@ class Plan:
             corners = self.clipped(corners, (a, b, c + room))
         if span.drop != 2:                          # by the cell's two borders along the dropped axis
             a, b, c = self.height()
-            slack = span.slacks[span.drop]
+            slack = span.slack
             corners = self.clipped(corners, (a, b, c + slack))
             corners = self.clipped(corners, (-a, -b, self.one + slack - c))
         return corners
@@ -273,11 +303,11 @@ def set_ends(S, voxel):
         voxel.far = voxel.near + Value(1, form.f)
 
 
-def voxel_of(S, span, plan):
+def voxel_of(S, span, plan, object_number):
     """A voxel without plane and normals, or None: the polygon does not touch the cell."""
     f, rung = S.formats, S.option["hit"]
     voxel = Voxel()
-    voxel.polygon, voxel.object, voxel.drop = span.polygon, span.object, span.drop
+    voxel.polygon, voxel.object, voxel.drop = span.polygon, object_number, span.drop
     voxel.pieces = voxel.twice_area = 0
     if rung == "depth":
         z = plan.word(span.z)
@@ -288,7 +318,7 @@ def voxel_of(S, span, plan):
     if not corners:
         return None
     plan.measure(corners)
-    room = f.hair + plan.word(span.slacks[2])       # the axis `drop` alone has one
+    room = f.hair + plan.word(span.slack) if span.drop == 2 else f.hair
     set_run(S, voxel, plan.word(plan.low[2]) - room, plan.word(plan.high[2]) + room)
     crossing = plan.cover(voxel)
     if crossing is None:
@@ -302,10 +332,10 @@ def voxel_of(S, span, plan):
     return voxel
 
 
-def store_voxel(S, voxels, span):
+def store_voxel(S, voxels, span, object_number):
     """Makes the voxel; a piece of the polygon that came last joins its voxel."""
     plan = Plan(S, span)
-    piece = voxel_of(S, span, plan)
+    piece = voxel_of(S, span, plan, object_number)
     if piece is None:
         return
     if S.option["hit"] != "mask" and voxels and voxels[-1].polygon == span.polygon:

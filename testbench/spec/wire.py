@@ -1,6 +1,7 @@
 """Messages as the wires carry them, and as words in a record."""
 
 from links import Answer, Packet
+from load_wire import LOAD_TYPES, LoadWire, packed, width
 from rays import Ray
 from words import Value, ZERO, bits_to
 
@@ -24,8 +25,8 @@ class Wire:
             "shadow_ray": way + [("reach", W), ("polygon_left", 20), ("outside", 1)] + home,
             "intensity": [("type", 3), ("red", W), ("green", W), ("blue", W)] + home,
             "verdict": [("type", 3)] + home}
-        self.lengths = {name: sum(bits for _, bits in layout) for name, layout in self.layouts.items()}
-        self.load_lengths = load_lengths(S)
+        self.lengths = {name: width(layout) for name, layout in self.layouts.items()}
+        self.load = LoadWire(S)
 
     def layout(self, name):
         return self.layouts["verdict" if name in VERDICTS else name]
@@ -33,8 +34,8 @@ class Wire:
     def length(self, message):
         """Its bits."""
         name = name_of(message)
-        if name in self.load_lengths:
-            return self.load_lengths[name](message)
+        if name in LOAD_TYPES:
+            return self.load.length(message)
         return self.lengths["verdict" if name in VERDICTS else name]
 
     def words(self, message):
@@ -60,17 +61,16 @@ class Wire:
 
     def pack(self, name, fields):
         """Hexadecimal digits, or "-" where a voxel's number does not fit."""
-        bits = length = 0
-        for field, width in self.layout(name):
+        layout = self.layout(name)
+        values = []
+        for field, _ in layout:
             word = TYPES[name] if field == "type" else fields[field]
             if field in ("1/dx", "1/dy"):
                 word = word[0] << 6 | word[1] & 63
             elif field == "slot" and word > self.pixel_slot:
                 return "-"
-            bits = bits << width | word & ((1 << width) - 1)
-            length += width
-        fill = -length % 4
-        return format(bits << fill, f"0{(length + fill) // 4}x")
+            values.append(word)
+        return packed(layout, values)
 
     def text(self, name, fields):
         """The same in words, without the type."""
@@ -134,19 +134,3 @@ def name_of(message):
     if isinstance(message, Ray):
         return "shadow_ray" if message.is_shadow() else "ray"
     return message.kind
-
-
-def load_lengths(S):
-    """Bits of load messages, by kind."""
-    f, W = S.formats, S.formats.W
-    place, L, rung = 3 * (W + 12) + 6, f.loading.bits, S.option["hit"]
-    features = 3 + 6 * (f.feature.bits - 1) + f.shine_bits + f.ior.bits - 1 + 1
-    setup = 3 + place + 1 + 6 + 3 * W + 16 + 16 + 6 + 7 + len(S.sources) * (place + 3 * W)
-    span = 3 + 20 + 2 * bits_to(S.width) + (6 * L if S.option["display"] == "gouraud" else 0)
-    edge = 0
-    if rung == "depth":
-        span += 2 * L + (6 * L if S.option["normals"] == "voxel" else 2 + 9 * L)
-    else:
-        span, edge = span + 13 * L + 6, 3 * L
-    return {"setup": lambda _: setup, "features": lambda _: features,
-            "span": lambda item: span + edge * len(item.edges), "end_of_scene": lambda _: 3}
