@@ -54,6 +54,9 @@ class LoadWire:
             return item.bits
         return packed(self.layout_of_span(len(item.edges)), item.wire_values())
 
+    def word_names(self, item):
+        return item.word_names() if item.kind == "span" else ["object"]
+
     # What the machine latches from the wires has to be what the head says.
 
     def check(self, kind, number, bits):

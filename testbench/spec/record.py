@@ -3,6 +3,7 @@
 import json
 from fractions import Fraction
 
+from load_wire import LOAD_TYPES
 from loading import LoadMessage
 from rays import SIDES, Machine, Material, Source
 from voxels import Span
@@ -21,6 +22,7 @@ class Event:
         self.line, self.cycle, self.what = line, cycle, what
         self.side = self.index = self.cycles = self.bits = self.name = None
         self.fields, self.words, self.identity, self.value = None, [], (0, 0), None
+        self.done = False                           # by the cell, of what is expected
 
     def buffer(self):
         return self.what, self.side, self.index
@@ -45,7 +47,6 @@ class Record:
                     raise WrongFile(f"{path}: line {number}: {error!r}") from error
         if self.end is None:
             raise WrongFile(f"{path}: it has no end")
-        self.load_kinds()
 
     def read_head(self, line):
         words = line.split()
@@ -137,21 +138,25 @@ class Record:
         return False
 
     def read_message(self, event, remark):
-        if event.name not in TYPES:
-            return
-        event.fields = self.wire.parse(event.name, event.words)
-        if event.bits != self.wire.pack(event.name, event.fields):
-            raise ValueError("bits and words differ")
-        if "pixel" in remark:
-            event.identity = int(remark[remark.index("pixel") + 1]), int(remark[remark.index("branch") + 1])
-
-    def load_kinds(self):
-        for event in self.events:
-            if event.name and event.fields is None and event.name not in self.wire.load_lengths:
-                raise WrongFile(f"{self.path}: line {event.line}: no message '{event.name}'")
+        """Bits and words have to say the same."""
+        if event.name in TYPES:
+            event.fields = self.wire.parse(event.name, event.words)
+            bits = self.wire.pack(event.name, event.fields)
+            if "pixel" in remark:
+                event.identity = int(remark[remark.index("pixel") + 1]), int(remark[remark.index("branch") + 1])
+        elif event.name in LOAD_TYPES:
+            message = self.message(event)
+            bits = self.wire.load.pack(message)
+            self.wire.load.check(event.name, getattr(message, "number", None), event.bits)
+        else:
+            raise ValueError(f"no message '{event.name}'")
+        if event.bits != bits:
+            raise ValueError(f"the words are {bits}, not {event.bits}")
 
     def message(self, event):
         """What an `in` line brings, for the cell's buffer."""
         if event.fields is None:
-            return Span(self.S, event.words) if event.name == "span" else LoadMessage(event.name, event.words)
+            if event.name == "span":
+                return Span(self.S, event.words)
+            return LoadMessage(event.name, event.words, event.bits)
         return self.wire.message(event.name, event.fields, event.identity)

@@ -34,14 +34,9 @@ class Replay:
             self.compared["take"] += 1
 
     def out(self, now, side, index, cycles, message):
-        name = name_of(message)
-        packs = name in self.wire.layouts or name in ("lit", "blocked", "postponed")
-        if packs:
-            fields = self.wire.words(message)
-            bits, words = self.wire.pack(name, fields), self.wire.text(name, fields)
-        else:
-            bits, words = "-", " ".join(message.words())
-        event = self.next_expected(now, ("out", side, index), f" {cycles} {bits} {name} {words}")
+        name, wire = name_of(message), self.wire
+        bits, words = wire.bits_and_words(message)
+        event = self.next_expected(now, ("out", side, index), f" {cycles} {bits} {name} {' '.join(words)}")
         if not event:
             return
         self.compared[name] += 1
@@ -49,14 +44,13 @@ class Replay:
             self.differ(event, now, f"cycles on the link are {cycles}, expected {event.cycles}")
         if event.name != name:
             self.differ(event, now, f"it is '{name}', expected '{event.name}'")
-        elif packs and (bits, bits if bits != "-" else words.split()) != (event.bits, bits if bits != "-" else event.words):
-            for field, _ in self.wire.layout(name)[1:]:
-                if fields[field] != event.fields[field]:
-                    self.differ(event, now, f"field '{field}' is {self.wire.word_text(field, fields[field])}, expected "
-                                            f"{self.wire.word_text(field, event.fields[field])}")
-        elif not packs and words.split() != event.words:
-            place = next((i for i, (a, b) in enumerate(zip(words.split(), event.words)) if a != b), None)
-            self.differ(event, now, f"word {place} of {name} differs: {words}")
+        elif bits != event.bits or (bits == "-" and words != event.words):
+            names = wire.word_names(message)
+            for field, own, other in zip(names, words, event.words):
+                if own != other:
+                    self.differ(event, now, f"field '{field}' is {own}, expected {other}")
+            if words == event.words or len(words) != len(event.words):
+                self.differ(event, now, f"its bits are {bits}")
 
     def next_expected(self, now, buffer, text):
         side = buffer[1] if buffer[1] == "load" else SIDES[buffer[1]]
@@ -66,6 +60,7 @@ class Replay:
             self.differ(None, now, f"nothing more is expected of it; it did: {did}")
             return None
         event = lines.popleft()
+        event.done = True
         if event.cycle != now:
             self.differ(event, now, f"expected in cycle {event.cycle}; it did: {did}")
         return event
@@ -104,7 +99,7 @@ class Replay:
                 if event.what == "free":
                     self.cell.outputs[event.side].held[event.index] -= 1
                     changed = True
-                elif event.what in ("take", "out") and event in self.expected.get(event.buffer(), ()):
+                elif event.what in ("take", "out") and not event.done:
                     self.differ(event, now, "it did not do this")
             while cycles and cycles[0] <= now:
                 cycles.popleft()
@@ -141,7 +136,7 @@ def main(paths):
     if not paths:
         print(__doc__)
         return 1
-    code = 0
+    differ, total = 0, Counter()
     for path in paths:
         try:
             differences, compared = replay(path)
@@ -150,11 +145,11 @@ def main(paths):
             return 1
         for difference in differences[:MOST_DIFFERENCES]:
             print(difference)
-        counts = ", ".join(f"{count} {what}" for what, count in sorted(compared.items()))
-        print(f"{path}: {'differs' if differences else 'equal'}: {counts}")
-        if differences:
-            code = 2
-    return code
+        differ += bool(differences)
+        total += compared
+    counts = ", ".join(f"{count} {what}" for what, count in sorted(total.items()))
+    print(f"{len(paths)} files, {differ} with differences; compared: {counts}")
+    return 2 if differ else 0
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ A span's words are of the format `loading`; here they are plain integers in unit
 fraction bits), since sums of them are cut off at that bit."""
 
 from hits import Voxel, WINDOW
-from load_wire import FIELD_OF_NORMALS, LOAD_TYPES
+from load_wire import COLOURS, FIELD_OF_NORMALS, LOAD_TYPES
 from words import Value, clamp
 
 MASK = 8                                            # sub-cells of a mask, along each axis
@@ -55,6 +55,10 @@ class Span:
         values.update(zip(("nx", "ny", "nz", "dnx", "dny", "dnz"), plane + self.d_centre))
         numbers = [values[name] for name in self.names] + [word for edge in self.edges for word in edge]
         return [str(number) for number in numbers + self.colour + self.d_colour]
+
+    def word_names(self):
+        edges = [f"edge {i} {letter}" for i in range(len(self.edges)) for letter in "abc"]
+        return self.names + edges + COLOURS * bool(self.colour)
 
     def wire_values(self):
         """In the order of the wires."""

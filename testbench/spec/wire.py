@@ -72,9 +72,22 @@ class Wire:
             values.append(word)
         return packed(layout, values)
 
-    def text(self, name, fields):
-        """The same in words, without the type."""
-        return " ".join(self.word_text(field, fields[field]) for field, _ in self.layout(name) if field != "type")
+    def bits_and_words(self, message):
+        """As in a record: hexadecimal digits, and the words without the type."""
+        name = name_of(message)
+        if name in LOAD_TYPES:
+            return self.load.pack(message), message.words()
+        fields = self.words(message)
+        return self.pack(name, fields), self.field_texts(name, fields)
+
+    def field_texts(self, name, fields):
+        return [self.word_text(field, fields[field]) for field, _ in self.layout(name)[1:]]
+
+    def word_names(self, message):
+        name = name_of(message)
+        if name in LOAD_TYPES:
+            return self.load.word_names(message)
+        return [field for field, _ in self.layout(name)[1:]]
 
     def word_text(self, field, word):
         if field in ("1/dx", "1/dy"):
