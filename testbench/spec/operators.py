@@ -1,5 +1,6 @@
 """The operators beside the ALU: reciprocal, 1/sqrt and power, and what is made of them."""
 
+from functools import lru_cache
 from math import isqrt
 
 from words import Value, ZERO, leading_exponent, shifted, to_mantissas
@@ -11,6 +12,22 @@ def reciprocal_word(i, n, f):
     """2^f / (1 + i/n) to the nearest."""
     over, under = n << (f + 1), n + i
     return (over // under + 1) >> 1
+
+
+def rounded_root(m, f, nearest=True):
+    """2^f / sqrt(m), m of f - 1 fraction bits."""
+    twice = isqrt((1 << (3 * f + 1)) // m)
+    return (twice + 1 if nearest else twice) >> 1
+
+
+def root_word(i, n, f):
+    """1/sqrt from 1 to 2."""
+    return rounded_root(((n + i) << (f - 1)) // n, f)
+
+
+def upper_root_word(i, n, f):
+    """1/sqrt from 2 to 4."""
+    return rounded_root(((n + i) << f) // n, f)
 
 
 def log2_word(i, n, f):
@@ -42,15 +59,18 @@ def exp2_word(i, n, f):
 class Lines:
     """A table of 2^k lines; the leading bits of the argument choose the line, the rest the place on it."""
 
-    def __init__(self, size, argument_bits, word):
+    def __init__(self, word, size, argument_bits, f):
         k = min(size.bit_length() - 1, argument_bits)
         self.rest = argument_bits - k
-        self.words = [word(i, 1 << k) for i in range((1 << k) + 1)]
+        self.words = [word(i, 1 << k, f) for i in range((1 << k) + 1)]
 
     def at(self, argument, nearest):
         line, along = argument >> self.rest, argument & ((1 << self.rest) - 1)
         a, b = self.words[line], self.words[line + 1]
         return shifted((a << self.rest) + (b - a) * along, self.rest, nearest)
+
+
+table = lru_cache(maxsize=None)(Lines)               # many cells have the same
 
 
 def table_size(name, configured, W):
@@ -70,20 +90,13 @@ class Operators:
         self.nearest = option["rounding"] == "nearest"
         self.method = {name: option[name] for name in ("reciprocal", "root", "power")}
         size = {name: table_size(name, option[name + "-table"], W) for name in self.method}
-        self.reciprocals = Lines(size["reciprocal"], f, lambda i, n: reciprocal_word(i, n, f))
-        # 1/sqrt over two octaves: 1 to 2 and 2 to 4, with f - 1 fraction bits.
-        self.roots = [Lines(size["root"] // 2, f - 1 + octave,
-                            lambda i, n, octave=octave: self.nearest_root(((n + i) << (f - 1 + octave)) // n, True))
-                      for octave in (0, 1)]
-        self.logarithms = Lines(size["power"], f, lambda i, n: log2_word(i, n, f))
-        self.powers = Lines(size["power"], f, lambda i, n: exp2_word(i, n, f))
+        self.reciprocals = table(reciprocal_word, size["reciprocal"], f, f)
+        self.roots = [table(root_word, size["root"] // 2, f - 1, f), table(upper_root_word, size["root"] // 2, f, f)]
+        self.logarithms = table(log2_word, size["power"], f, f)
+        self.powers = table(exp2_word, size["power"], f, f)
 
     def cut(self, raw, places):
         return shifted(raw, places, self.nearest)
-
-    def nearest_root(self, m, nearest):
-        twice = isqrt((1 << (3 * self.f + 1)) // m)
-        return (twice + 1 if nearest else twice) >> 1
 
     def mantissa(self, raw, exponent):
         """raw as a mantissa of f fraction bits from 1 to 2, and its exponent, which may grow by one."""
@@ -104,7 +117,7 @@ class Operators:
     def root_of_mantissa(self, m):
         f = self.f
         if self.method["root"] == "rounded":
-            return self.nearest_root(m, self.nearest)
+            return rounded_root(m, f, self.nearest)
         octave = m >> f
         r = self.roots[octave].at(m - (1 << (f - 1 + octave)), self.nearest)
         if self.method["root"] == "newton":

@@ -159,7 +159,7 @@ class Plan:
     # Bounds, middle and area
 
     def measure(self, corners):
-        span, n = self.span, len(corners)
+        n = len(corners)
         height = self.height()
         heights = [self.at(height, p) for p in corners]
         middle = [sum(p[k] for p in corners) * ((1 << 32) // n) >> 32 for k in (0, 1)]
