@@ -4,6 +4,7 @@ from words import Value, ZERO, bits_to
 
 LOAD_TYPES = {"setup": 0, "features": 1, "span": 5, "end_of_scene": 6}
 FIELD_OF_NORMALS = ["n0x", "n0y", "n0z", "nux", "nuy", "nuz", "nvx", "nvy", "nvz"]
+CENTRE = ["ncx", "ncy", "ncz", "dncx", "dncy", "dncz"]
 COLOURS = ["red", "green", "blue", "d_red", "d_green", "d_blue"]
 FACES = ["left", "right", "top", "bottom", "front", "back"]
 
@@ -26,16 +27,14 @@ class LoadWire:
                           ("mirror", 1)])
         column = bits_to(S.width)
         self.span = [("type", 3), ("polygon", 20), ("x1", column), ("xr", column)]
-        normals = [(name, L) for name in FIELD_OF_NORMALS]
         self.edge = []
-        if option["hit"] != "depth":
-            self.span += [("axis", 2), ("sign", 1), ("slope_u", L), ("slope_v", L), ("c", L), ("slack", L)]
-            self.span += normals + [("edges", 3)]
-            self.edge = [("a", L), ("b", L), ("c", L)]
-        elif option["normals"] == "voxel":
-            self.span += [(name, L) for name in ("z", "dz", "nx", "ny", "nz", "dnx", "dny", "dnz")]
+        if option["hit"] == "depth":
+            self.span += [("z", L), ("dz", L), ("axis", 2), ("sign", 1), ("slope_u", W), ("slope_v", W)]
+            self.span += [(name, L) for name in (CENTRE if option["normals"] == "voxel" else FIELD_OF_NORMALS)]
         else:
-            self.span += [("z", L), ("dz", L), ("axis", 2)] + normals
+            self.span += [("axis", 2), ("sign", 1), ("slope_u", L), ("slope_v", L), ("c", L), ("slack", L)]
+            self.span += [(name, L) for name in FIELD_OF_NORMALS] + [("edges", 3)]
+            self.edge = [("a", L), ("b", L), ("c", L)]
         self.colours = [(name, L) for name in COLOURS] if option["display"] == "gouraud" else []
 
     def layout_of_span(self, edges):

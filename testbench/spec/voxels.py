@@ -4,7 +4,7 @@ A span's words are of the format `loading`; here they are plain integers in unit
 fraction bits), since sums of them are cut off at that bit."""
 
 from hits import Voxel, WINDOW
-from load_wire import COLOURS, FIELD_OF_NORMALS, LOAD_TYPES
+from load_wire import CENTRE, COLOURS, FIELD_OF_NORMALS, LOAD_TYPES
 from words import Value, clamp
 
 MASK = 8                                            # sub-cells of a mask, along each axis
@@ -15,9 +15,8 @@ def span_names(option):
     names = ["polygon", "x1", "xr"]
     if option["hit"] != "depth":
         return names + ["axis", "nx", "ny", "nz", "c", "slack"] + FIELD_OF_NORMALS + ["edges"]
-    if option["normals"] == "voxel":
-        return names + ["z", "dz", "nx", "ny", "nz", "dnx", "dny", "dnz"]
-    return names + ["z", "dz", "axis"] + FIELD_OF_NORMALS
+    normals = CENTRE if option["normals"] == "voxel" else FIELD_OF_NORMALS
+    return names + ["z", "dz", "axis", "nx", "ny", "nz"] + normals
 
 
 class Span:
@@ -33,12 +32,7 @@ class Span:
         self.n, (self.c, self.slack) = take("nx", "ny", "nz"), take("c", "slack")
         self.normal, self.du, self.dv = (take(*FIELD_OF_NORMALS[i:i + 3]) for i in (0, 3, 6))
         self.z, self.dz = take("z", "dz")
-        self.centre, self.d_centre = [0] * 3, [0] * 3
-        if S.option["hit"] == "depth":              # it has no plane: one that faces the viewer stands for it
-            self.centre, self.d_centre = self.n, take("dnx", "dny", "dnz")
-            self.n = [0, 0, 1 << S.formats.loading.f]
-            if "axis" not in fields:
-                self.drop = 2
+        self.centre, self.d_centre = take(*CENTRE[:3]), take(*CENTRE[3:])
         rest = [int(word) for word in words[len(self.names):]]
         count = 3 * fields.get("edges", 0)
         self.edges = [rest[i:i + 3] for i in range(0, count, 3)]
@@ -48,11 +42,10 @@ class Span:
         self.colour, self.d_colour = colours[:3], colours[3:]
 
     def words(self):
-        plane = self.centre if self.S.option["hit"] == "depth" else self.n
         values = dict(zip(FIELD_OF_NORMALS, self.normal + self.du + self.dv), polygon=self.polygon, x1=self.x1,
                       xr=self.last, axis=self.drop, c=self.c, slack=self.slack, z=self.z, dz=self.dz,
                       edges=len(self.edges))
-        values.update(zip(("nx", "ny", "nz", "dnx", "dny", "dnz"), plane + self.d_centre))
+        values.update(zip(["nx", "ny", "nz"] + CENTRE, self.n + self.centre + self.d_centre))
         numbers = [values[name] for name in self.names] + [word for edge in self.edges for word in edge]
         return [str(number) for number in numbers + self.colour + self.d_colour]
 
@@ -62,16 +55,16 @@ class Span:
 
     def wire_values(self):
         """In the order of the wires."""
+        u, v = self.axes()
+        plane = [self.drop, int(self.n[self.drop] < 0), self.n[u], self.n[v]]
+        normals = self.normal + self.du + self.dv
         values = [LOAD_TYPES["span"], self.polygon, self.x1, self.last]
-        option, normals = self.S.option, self.normal + self.du + self.dv
-        if option["hit"] != "depth":
-            u, v = self.axes()
-            values += [self.drop, int(self.n[self.drop] < 0), self.n[u], self.n[v], self.c, self.slack]
-            values += normals + [len(self.edges)] + [word for edge in self.edges for word in edge]
-        elif option["normals"] == "voxel":
-            values += [self.z, self.dz] + self.centre + self.d_centre
+        if self.S.option["hit"] != "depth":
+            values += plane + [self.c, self.slack] + normals + [len(self.edges)]
+            values += [word for edge in self.edges for word in edge]
         else:
-            values += [self.z, self.dz, self.drop] + normals
+            values += [self.z, self.dz] + plane
+            values += self.centre + self.d_centre if self.S.option["normals"] == "voxel" else normals
         return values + self.colour + self.d_colour
 
     def axes(self):
@@ -228,6 +221,9 @@ class Plan:
     def set_plane(self, voxel):
         """The plane is right at the voxel's point, whatever its rounded slopes lose elsewhere."""
         f, span = self.S.formats, self.span
+        if self.S.option["hit"] == "depth":         # a span's slopes are words of the voxel there
+            voxel.n, voxel.c = [f.unit.word(raw) for raw in span.n], f.offset.word(0)
+            return
         n = [self.word(raw) for raw in span.n]
         voxel.n = [f.unit.hold(c) for c in n]
         offset = self.word(span.c) - n[2] * voxel.base
