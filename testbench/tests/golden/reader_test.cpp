@@ -91,7 +91,7 @@ LoadItem drawn_span(const Arithmetic& arithmetic, property::Random& random) {
     span.last = random.whole(0, 4095);
     span.drop = random.whole(0, 2);
     span.object = std::uint32_t(random.whole(0, 100));
-    span.plane.n = drawn_vector(arithmetic, f, random);
+    span.plane.n = drawn_vector(arithmetic, arithmetic.formats().unit, random);
     span.plane.n[span.drop] = random.chance(0.5) ? 1 : -1;
     span.z = drawn(arithmetic, f, random);
     span.dn = drawn_vector(arithmetic, f, random);
