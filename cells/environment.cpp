@@ -122,13 +122,13 @@ WireBits Environment::pass(LoadItem& item) const {
     return bits;
 }
 
-void Environment::pack_and_unpack(LoadItem& item, int bits) {
+void Environment::pack_and_unpack(LoadItem& item, int charged) {
     ++meters.counters.packed_load;
     const auto what = [&] { return std::string("load message '") + name_of(item.kind) + "'"; };
     const WireBits packed = checked(what, [&] { return pass(item); });
-    if (packed.size() != bits) {
+    if (packed.size() != charged) {
         throw std::logic_error("internal error: " + what() + " has " + std::to_string(packed.size()) +
-                               " bits and is charged for " + std::to_string(bits));
+                               " bits and is charged for " + std::to_string(charged));
     }
 }
 

@@ -83,8 +83,8 @@ struct Environment : CellConfig {
         if (wire) pack_and_unpack(answer);
     }
     /// The same for a load message, which is charged for so many bits.
-    void over_wire(LoadItem& item, int bits) {
-        if (load_wire) pack_and_unpack(item, bits);
+    void over_wire(LoadItem& item, int charged) {
+        if (load_wire) pack_and_unpack(item, charged);
     }
 
     /// `part`: the rows that this process simulates; null: the whole array.
@@ -106,7 +106,7 @@ struct Environment : CellConfig {
   private:
     void pack_and_unpack(RayPacket& packet);
     void pack_and_unpack(Answer& answer);
-    void pack_and_unpack(LoadItem& item, int bits);
+    void pack_and_unpack(LoadItem& item, int charged);
     WireBits pass(LoadItem& item) const;
     template <typename F, typename U>
     auto checked(const F& what, const U& unpacked);

@@ -17,10 +17,10 @@ constexpr const char* operation_names[] = {"none",  "walk",   "compare",    "set
 constexpr const char* slot_names[] = {"empty", "to_set_up", "in_setup", "waiting", "in_shading", "to_answer"};
 // Two names for empty buffers and messages on the wires, then the names of RayKind, Answer::Kind and
 // LoadItem::Kind, in their order.
-constexpr const char* type_names[] = {"none",    "on_wires",  "primary",     "reflected", "refracted",
-                                      "shadow",  "memo",      "precast",     "intensity", "lit",
-                                      "blocked", "postponed", "setup",       "features",  "polygon",
-                                      "trapeze", "span",      "end_of_scene"};
+constexpr const char* type_names[] = {"none",    "on_wires",  "primary", "reflected",   "refracted",
+                                      "shadow",  "memo",      "precast", "intensity",   "lit",
+                                      "blocked", "postponed", "setup",   "features",    "polygon",
+                                      "surface", "trapeze",   "span",    "end_of_scene"};
 constexpr std::uint64_t no_message = 0;
 constexpr std::uint64_t on_wires = 1;
 constexpr std::uint64_t first_ray = 2;

@@ -75,7 +75,8 @@ struct CostTable {
     std::uint32_t distribution_pass;
     CostBasis basis;  ///< of the entries that are not set apart
 
-    CostTable() : CostTable(CostBasis::word) {}
+    /// Those estimated by hand, until loading is counted, too.
+    CostTable() : CostTable(CostBasis::estimate) {}
     explicit CostTable(CostBasis basis);
 
     /// Cycles of an operator, by its method.

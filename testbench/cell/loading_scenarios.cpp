@@ -6,10 +6,13 @@ using namespace scripted;
 
 namespace {
 
-constexpr int setup_link = 6;     // 3 + 102 + 6 = 111 bits
+constexpr int setup_link = 11;    // 3 + 103 + 6 + 60 + 16 + 22 + 7 = 217 bits, no source
 constexpr int features_link = 6;  // 3 + 36 + 36 + 12 + 16 + 1 = 104 bits
-constexpr int span_link = 56;     // 3 + 20 + 4 + (5 + 4 + 9 + 12) · 36 + 3 + 3 = 1113 bits
+constexpr int span_link = 36;     // 3 + 20 + 4 + 3 + (4 + 9 + 2 · 3) · 36 + 3 = 717 bits, two edges
 constexpr int end_link = 1;       // 3 bits
+
+/// When the first message, sent in 1, is passed on.
+constexpr Cycle passed = 1 + setup_link + load_forward;
 
 }  // namespace
 
@@ -22,19 +25,21 @@ std::vector<Scenario> loading_scenarios() {
         const LoadItem setup = load_item(LoadItem::Kind::setup);
         const LoadItem features = load_item(LoadItem::Kind::features, 0);
         const LoadItem end = load_item(LoadItem::Kind::end_of_scene);
-        // The second waits for room: the first is on the wires for 6 cycles from 8 on and is taken out in 14.
+        // The second waits for room: the first is taken out of the far buffer when it is there.
+        constexpr Cycle taken = passed + setup_link;
+        constexpr Cycle last = taken + 1 + features_link + 10;
         script.in(1, Side::west, setup_link, setup)
-            .take(7 + load_forward, Side::west, 0)
-            .out(7 + load_forward, Side::east, setup_link, setup)
-            .free(14, Side::east, 0)
-            .in(9, Side::west, 1, features)
-            .take(15, Side::west, 0)
-            .out(15, Side::east, features_link, features)
-            .free(21, Side::east, 0)
-            .in(30, Side::west, end_link, end)
-            .take(32, Side::west, 0)
-            .out(32, Side::east, end_link, end);
-        all.push_back(script.until(60));
+            .take(passed, Side::west, 0)
+            .out(passed, Side::east, setup_link, setup)
+            .free(taken, Side::east, 0)
+            .in(passed + 1, Side::west, 1, features)
+            .take(taken + 1, Side::west, 0)
+            .out(taken + 1, Side::east, features_link, features)
+            .free(taken + 1 + features_link, Side::east, 0)
+            .in(last, Side::west, end_link, end)
+            .take(last + end_link + load_forward, Side::west, 0)
+            .out(last + end_link + load_forward, Side::east, end_link, end);
+        all.push_back(script.until(last + 100));
     }
     {
         Script script("span", "a span that reaches on makes a voxel, advances by one cell and goes on");
@@ -64,9 +69,9 @@ std::vector<Scenario> loading_scenarios() {
         const LoadItem setup = load_item(LoadItem::Kind::setup);
         const LoadItem end = load_item(LoadItem::Kind::end_of_scene);
         script.in(1, Side::west, setup_link, setup)
-            .take(8, Side::west, 0)
-            .out(8, Side::east, setup_link, setup)
-            .in(9, Side::west, end_link, end)
+            .take(passed, Side::west, 0)
+            .out(passed, Side::east, setup_link, setup)
+            .in(passed + 1, Side::west, end_link, end)
             .free(80, Side::east, 0)  // room from the next cycle on
             .take(81, Side::west, 0)
             .out(81, Side::east, end_link, end);

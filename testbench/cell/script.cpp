@@ -4,6 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "model/loading/loading.hpp"
 #include "model/loading/trapeze.hpp"
 
 namespace raycell {
@@ -123,7 +124,9 @@ LoadItem span_of(const CellSetup& setup, std::uint32_t polygon, const dvec3& cor
                  const dvec3& v, int x, int y) {
     const Arithmetic& arithmetic = script_arithmetic();
     LoadItem item = load_item(LoadItem::Kind::span);
-    const Polygon whole = make_polygon(polygon, 0, {corner, corner + u, corner + u + v, corner + v});
+    Polygon whole = make_polygon(polygon, 0, {corner, corner + u, corner + u + v, corner + v});
+    if (!clip_to_cube(whole, setup.scene.frame.cube(), arithmetic))
+        throw std::logic_error("a rectangle of a scenario must lie in the cube");
     const std::vector<Trapeze> trapezes =
         precompute(whole, arithmetic, setup.picture.width, setup.picture.height);
     const auto span = trapezes.size() == 1

@@ -191,7 +191,9 @@ TEST_F(AlteredVectors, TheFilesForReadmemhSayTheSame) {
         ASSERT_GT(memory[out].size(), 2u);
         EXPECT_EQ(memory[out][0].rfind("// raycell-golden 2: ", 0), 0u);
         for (const std::string& line : memory[out]) {
-            if (&line != &memory[out][0]) EXPECT_EQ(line.size(), memory[out][1].size()) << "of one width";
+            if (&line != &memory[out][0]) {
+                EXPECT_EQ(line.size(), memory[out][1].size()) << "of one width";
+            }
         }
     }
     for (std::size_t i = original_.first; i + 1 < original_.lines.size(); ++i) {
@@ -216,7 +218,9 @@ TEST_F(AlteredVectors, TheFilesForReadmemhSayTheSame) {
         } else {
             EXPECT_EQ(sides.at(line.side), words[2]);
             EXPECT_EQ(std::to_string(line.index), words[3]);
-            if (words.size() > 4) EXPECT_EQ(std::to_string(line.link), words[4]);
+            if (words.size() > 4) {
+                EXPECT_EQ(std::to_string(line.link), words[4]);
+            }
             if (has_bits(words)) {
                 message = words[bits_at];
                 EXPECT_EQ((line.bits + 3) / 4, message.size());

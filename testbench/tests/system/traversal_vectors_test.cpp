@@ -47,8 +47,12 @@ TEST_P(TraversalVectors, OfARunReplayAndRecordingChangesNothing) {
         for (std::size_t line = vectors.first; line < vectors.lines.size(); ++line) {
             const Words words = counted(vectors.lines[line]);
             if (words[1] == "found") ++decisions[words[6]];
-            if (!exact) EXPECT_FALSE(contains(vectors.lines[line], "0x")) << vectors.lines[line];
-            if (words[1] == "test") EXPECT_EQ(words[4] == "-", exact) << vectors.lines[line];
+            if (!exact) {
+                EXPECT_FALSE(contains(vectors.lines[line], "0x")) << vectors.lines[line];
+            }
+            if (words[1] == "test") {
+                EXPECT_EQ(words[4] == "-", exact) << vectors.lines[line];
+            }
         }
     }
     EXPECT_GT(decisions["hit"], 0);
