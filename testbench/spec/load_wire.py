@@ -26,19 +26,26 @@ class LoadWire:
                          [("Shine_exponent", 5), ("Shine_fraction", f.shine_bits - 5), ("index", f.ior.bits - 1),
                           ("mirror", 1)])
         column = bits_to(S.width)
-        self.span = [("type", 3), ("polygon", 20), ("x1", column), ("xr", column)]
+        self.span = [("type", 3), ("polygon", 20), ("X1", column), ("Xr", column)]
         self.edge = []
         if option["hit"] == "depth":
-            self.span += [("z", L), ("dz", L), ("axis", 2), ("sign", 1), ("slope_u", W), ("slope_v", W)]
-            self.span += [(name, L) for name in (CENTRE if option["normals"] == "voxel" else FIELD_OF_NORMALS)]
+            normals = components("N", "DN") if option["normals"] == "voxel" else components("n", "nu", "nv")
+            self.span += [("Z", L), ("DZ", L), ("axis", 2), ("sign", 1), ("slope_u", W), ("slope_v", W)]
+            self.span += [(name, L) for name in normals]
         else:
-            self.span += [("axis", 2), ("sign", 1), ("slope_u", L), ("slope_v", L), ("c", L), ("slack", L)]
-            self.span += [(name, L) for name in FIELD_OF_NORMALS] + [("edges", 3)]
-            self.edge = [("a", L), ("b", L), ("c", L)]
-        self.colours = [(name, L) for name in COLOURS] if option["display"] == "gouraud" else []
+            self.span += [("axis", 2), ("sign", 1), ("slope_u", L), ("slope_v", L), ("offset", L), ("slack", L)]
+            self.span += [(name, L) for name in components("n", "nu", "nv")] + [("edges", 3)]
+            self.edge = [("edge_a", L), ("edge_b", L), ("edge_c", L)]
+        colours = components("I", "DI", axes=("red", "green", "blue")) if option["display"] == "gouraud" else []
+        self.colours = [(name, L) for name in colours]
 
     def layout_of_span(self, edges):
         return self.span + self.edge * edges + self.colours
+
+    def layouts(self):
+        """As in a record's head: with one source, one edge."""
+        return {"setup": self.viewer + self.source, "features": self.features, "span": self.layout_of_span(1),
+                "end_of_scene": [("type", 3)]}
 
     def length(self, item):
         if item.kind == "setup":
@@ -100,6 +107,10 @@ class LoadWire:
         bits = self.S.formats.W + 12
         frac = bits - 1 - signed(v["place_exponent"], 6)
         return [Value(signed(v[axis], bits), frac) for axis in ("place_x", "place_y", "place_z")]
+
+
+def components(*vectors, axes="xyz"):
+    return [f"{vector}_{axis}" for vector in vectors for axis in axes]
 
 
 def width(layout):

@@ -106,7 +106,7 @@ class Record:
             if mine != text:
                 raise ValueError(f"format {name} is {text}, specified is {mine}")
         for name, fields in self.layouts.items():
-            mine = [f"{field}:{bits}" for field, bits in self.wire.layout(name)]
+            mine = [f"{field}:{bits}" for field, bits in {**self.wire.layouts, **self.wire.load.layouts()}[name]]
             if mine != fields:
                 raise ValueError(f"layout {name} is {' '.join(fields)}, specified is {' '.join(mine)}")
 
