@@ -57,7 +57,9 @@ class Wire:
     def carried(self, inverse):
         if inverse.raw == 0:
             return 0, 0
-        return abs(inverse.raw), self.S.formats.W - 1 - inverse.frac
+        bits = self.S.formats.W - 1                 # a power of two, 2^bits, is sent as half of it
+        m, exponent = abs(inverse.raw), bits - inverse.frac
+        return (m >> 1, exponent + 1) if m >> bits else (m, exponent)
 
     def pack(self, name, fields):
         """Hexadecimal digits, or "-" where a voxel's number does not fit."""
