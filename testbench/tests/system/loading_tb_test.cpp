@@ -113,7 +113,8 @@ TEST(LoadingTb, ChecksTeapotAtTheDefaults) {
     const std::string teapot = (shared_scenes() / "spd" / "teapot-s4.nff").string();
     const Json json = report(workshop, {teapot});
     EXPECT_EQ(json.at("bound").at("of"), "precomputation.out");
-    EXPECT_GT(json.at("bound").at("efficiency").get<double>(), 0.8);
+    // Messages are short: what lies between two of them, a row's work and a free place, counts for more.
+    EXPECT_GT(json.at("bound").at("efficiency").get<double>(), 0.65);
     // Trapezes are wide: with twice the buffer, a row takes the next one while it still sends the last one
     // on.
     const Json deeper = report(workshop, {teapot, "--buffer", "2"});
