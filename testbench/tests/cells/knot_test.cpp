@@ -106,7 +106,7 @@ TEST(Knot, IsNotSeenInALivelock) {
 }
 
 TEST(Knot, IsNotSeenInCongestionThatTheCycleLimitCut) {
-    Stuck stuck("facing_mirrors", [](PictureSettings&, MachineSettings& m) { m.max_cycles = 73500; });
+    Stuck stuck("facing_mirrors", [](PictureSettings&, MachineSettings& m) { m.max_cycles = 52260; });
     EXPECT_EQ(name_of(stuck.result.verdict), std::string("cycle_limit"));
     EXPECT_FALSE(stuck.result.waits.nodes().empty()) << "there was traffic";
     EXPECT_FALSE(stuck.result.waits.deadlocked());

@@ -83,7 +83,7 @@ TEST(TimedVerdict, OfARunCutShortNamesTheFewExteriorProcessorsThereAreAndSinceWh
     Stuck stopped("still_life", [](PictureSettings&, MachineSettings& m) {
         m.exterior_processors = 2;
         m.exterior_latency = latency;
-        m.max_cycles = 290000;
+        m.max_cycles = 210400;
     });
     ASSERT_EQ(name_of(stopped.result.verdict), std::string("cycle_limit"));
     EXPECT_GT(stopped.result.exterior.items, 100u) << "each was used many times";
@@ -102,14 +102,14 @@ TEST(TimedVerdict, ALimitThatIsJustLongEnoughIsNoLimit) {
     PictureSettings settings;
     settings.width = settings.height = 1;
     settings.exterior = ExteriorMode::none;
-    // Loading an empty scene into one cell: the set-up is ready in cycle 2, arrives in 8 (111 bits, 6
-    // cycles), leaves precomputation in 9, arrives in 15, leaves the row in 16, arrives in 22 and is taken in
-    // 23. The end mark leaves the row in 24, when the cell's only buffer place is empty, arrives in 25 and is
-    // taken in 26. The primary ray takes a walk step of 4 from 27 on and returns background in 31.
+    // Loading an empty scene into one cell: the set-up is ready in cycle 2, arrives in 13 (217 bits, 11
+    // cycles), leaves precomputation in 14, arrives in 25, leaves the row in 26, arrives in 37 and is taken in
+    // 38. The end mark leaves the row in 39, when the cell's only buffer place is empty, arrives in 40 and is
+    // taken in 41. The primary ray takes a walk step of 4 from 42 on and returns background in 46.
     MachineSettings exact;
-    exact.max_cycles = 31;
+    exact.max_cycles = 46;
     MachineSettings short_by_one;
-    short_by_one.max_cycles = 30;
+    short_by_one.max_cycles = 45;
     Machine second("exact", scene, settings, exact, nullptr);
     Machine third("short_by_one", scene, settings, short_by_one, nullptr);
     EXPECT_EQ(name_of(second.run().verdict), std::string("completed"));

@@ -12,7 +12,7 @@ namespace {
 #ifdef RAYCELL_SANITIZED
 constexpr std::uint64_t inputs = 40;  // of each seed: this build is slow
 constexpr std::uint64_t recounts = 1000;
-constexpr double recount_room = 1;  // cycles: the table is of more inputs
+constexpr double recount_room = 4;  // cycles: the table is of more inputs
 #else
 constexpr std::uint64_t inputs = 250;
 constexpr std::uint64_t recounts = 20000;
