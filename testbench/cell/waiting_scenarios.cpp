@@ -6,11 +6,18 @@ using namespace scripted;
 
 namespace {
 
-const Ray first = ray_of(RayKind::reflected, {0, 0.5, 5}, {1, 0, 0});
+// Both are children of slot 0 of cell (0, 1): with M = 1 there is no other.
+Ray first_ray() {
+    Ray ray = ray_of(RayKind::reflected, {0, 0.5, 5}, {1, 0, 0});
+    ray.slot = 0;
+    return ray;
+}
+const Ray first = first_ray();
 
 Ray second_ray() {
-    Ray ray = ray_of(RayKind::reflected, {0, 0.25, 6}, {1, 0, 0});
-    ray.slot = 3;
+    Ray ray = ray_of(RayKind::refracted, {0, 0.25, 6}, {1, 0, 0});
+    ray.slot = 0;
+    ray.child = 1;
     return ray;
 }
 

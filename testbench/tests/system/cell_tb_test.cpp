@@ -33,6 +33,7 @@ TEST(CellTb, EveryScenarioAsAFileReplaysAndAnyAlteredWordOfWhatIsExpectedIsFound
         for (std::size_t line = vectors.first; line + 1 < vectors.lines.size(); ++line) {
             const std::string original = vectors.lines[line];
             Words words = counted(original);
+            EXPECT_EQ(has_bits(words), words[1] == "in" || words[1] == "out") << file << ": " << original;
             if (words[1] != "out" && words[1] != "take" && words[1] != "pixel") continue;
             const auto at = std::size_t(random.whole(2, int(words.size()) - 1));
             words[at] = at == bits_at && has_bits(words) ? other_bits(words[at], random) : other(words[at]);
