@@ -77,55 +77,51 @@ bool equal(const ViewerMessage& a, const ViewerMessage& b) {
 
 /// Packs a load message and puts into its place what unpacks. What all cells latch is kept once for all of
 /// them: it must be equal.
-WireBits Environment::pass(LoadItem& item) const {
-    const std::uint32_t object = item.trapeze.object;
-    WireBits bits;
+WireBits Environment::exchange(LoadItem& item) const {
+    // Its object is the one whose features came last.
+    const auto replace = [](auto& message, auto unpacked) {
+        unpacked.object = message.object;
+        message = std::move(unpacked);
+    };
+    WireBits packed;
     bool latched = true;
     switch (item.kind) {
         case LoadItem::Kind::setup:
-            bits = load_wire->pack(viewer_of(context));
-            latched = equal(load_wire->unpack_viewer(bits), viewer_of(context));
+            packed = load_wire->pack(viewer_of(context));
+            latched = equal(load_wire->unpack_viewer(packed), viewer_of(context));
             break;
         case LoadItem::Kind::features:
-            bits = load_wire->pack(context.objects[item.object]);
-            latched = equal(load_wire->unpack_features(bits), context.objects[item.object]);
+            packed = load_wire->pack(context.objects[item.object]);
+            latched = equal(load_wire->unpack_features(packed), context.objects[item.object]);
             break;
-        case LoadItem::Kind::polygon: {
-            bits = load_wire->pack(item.polygon);
-            const std::uint32_t of = item.polygon.object;
-            item.polygon = load_wire->unpack_polygon(bits);
-            item.polygon.object = of;
+        case LoadItem::Kind::polygon:
+            packed = load_wire->pack(item.polygon);
+            replace(item.polygon, load_wire->unpack_polygon(packed));
             break;
-        }
         case LoadItem::Kind::surface:
-            bits = load_wire->pack(static_cast<const Surface&>(item.trapeze));
-            item.trapeze = {};
-            static_cast<Surface&>(item.trapeze) = load_wire->unpack_surface(bits);
-            item.trapeze.object = object;
+            packed = load_wire->pack(static_cast<const Surface&>(item.trapeze));
+            replace(static_cast<Surface&>(item.trapeze), load_wire->unpack_surface(packed));
             break;
         case LoadItem::Kind::trapeze:
-            bits = load_wire->pack(item.trapeze, item.intensities);
-            item.trapeze = load_wire->unpack_trapeze(bits, item.intensities);
+            packed = load_wire->pack(item.trapeze, item.intensities);
+            item.trapeze = load_wire->unpack_trapeze(packed, item.intensities);
             break;
-        case LoadItem::Kind::span: {
-            bits = load_wire->pack(item.span);
-            const std::uint32_t of = item.span.object;
-            item.span = load_wire->unpack_span(bits);
-            item.span.object = of;
+        case LoadItem::Kind::span:
+            packed = load_wire->pack(item.span);
+            replace(item.span, load_wire->unpack_span(packed));
             break;
-        }
         case LoadItem::Kind::end_of_scene:
-            bits = load_wire->end_of_scene();
+            packed = load_wire->end_of_scene();
             break;
     }
     if (!latched) throw std::logic_error("internal error: latched words differ from those of the message");
-    return bits;
+    return packed;
 }
 
 void Environment::pack_and_unpack(LoadItem& item, int charged) {
     ++meters.counters.packed_load;
     const auto what = [&] { return std::string("load message '") + name_of(item.kind) + "'"; };
-    const WireBits packed = checked(what, [&] { return pass(item); });
+    const WireBits packed = checked(what, [&] { return exchange(item); });
     if (packed.size() != charged) {
         throw std::logic_error("internal error: " + what() + " has " + std::to_string(packed.size()) +
                                " bits and is charged for " + std::to_string(charged));

@@ -107,7 +107,7 @@ struct Environment : CellConfig {
     void pack_and_unpack(RayPacket& packet);
     void pack_and_unpack(Answer& answer);
     void pack_and_unpack(LoadItem& item, int charged);
-    WireBits pass(LoadItem& item) const;
+    WireBits exchange(LoadItem& item) const;
     template <typename F, typename U>
     auto checked(const F& what, const U& unpacked);
 };

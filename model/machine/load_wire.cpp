@@ -293,86 +293,46 @@ void LoadWire::fields(Archive& a, Span& s) const {
            "loading: its change from cell to cell");
 }
 
-// The list of fields is an unpacker's, too: a packer gets a copy that it may write to.
-WireBits LoadWire::pack(const ViewerMessage& viewer) const {
+// The list of fields is an unpacker's, too: a packer gets copies that it may write to.
+template <typename... Parts>
+WireBits LoadWire::packed(Parts... parts) const {
     Packer packer;
-    ViewerMessage copy = viewer;
-    fields(packer, copy);
+    fields(packer, parts...);
     return packer.bits;
 }
-WireBits LoadWire::pack(const Material& features) const {
-    Packer packer;
-    Material copy = features;
-    fields(packer, copy);
-    return packer.bits;
+template <typename Message>
+Message LoadWire::unpacked(const WireBits& bits) const {
+    Unpacker unpacker(bits);
+    Message message;
+    fields(unpacker, message);
+    return message;
 }
-WireBits LoadWire::pack(const Polygon& polygon) const {
-    Packer packer;
-    Polygon copy = polygon;
-    fields(packer, copy);
-    return packer.bits;
-}
-WireBits LoadWire::pack(const Surface& surface) const {
-    Packer packer;
-    Surface copy = surface;
-    fields(packer, copy);
-    return packer.bits;
-}
+
+WireBits LoadWire::pack(const ViewerMessage& viewer) const { return packed(viewer); }
+WireBits LoadWire::pack(const Material& features) const { return packed(features); }
+WireBits LoadWire::pack(const Polygon& polygon) const { return packed(polygon); }
+WireBits LoadWire::pack(const Surface& surface) const { return packed(surface); }
 WireBits LoadWire::pack(const Trapeze& trapeze, const CornerIntensities& intensities) const {
-    Packer packer;
-    Trapeze copy = trapeze;
-    CornerIntensities colours = intensities;
-    fields(packer, copy, colours);
-    return packer.bits;
+    return packed(trapeze, intensities);
 }
-WireBits LoadWire::pack(const Span& span) const {
-    Packer packer;
-    Span copy = span;
-    fields(packer, copy);
-    return packer.bits;
-}
+WireBits LoadWire::pack(const Span& span) const { return packed(span); }
 WireBits LoadWire::end_of_scene() const {
     Packer packer;
     packer.type(LoadType::end_of_scene);
     return packer.bits;
 }
 
-ViewerMessage LoadWire::unpack_viewer(WireBits bits) const {
-    Unpacker unpacker(bits);
-    ViewerMessage viewer;
-    fields(unpacker, viewer);
-    return viewer;
-}
-Material LoadWire::unpack_features(WireBits bits) const {
-    Unpacker unpacker(bits);
-    Material features;
-    fields(unpacker, features);
-    return features;
-}
-Polygon LoadWire::unpack_polygon(WireBits bits) const {
-    Unpacker unpacker(bits);
-    Polygon polygon;
-    fields(unpacker, polygon);
-    return polygon;
-}
-Surface LoadWire::unpack_surface(WireBits bits) const {
-    Unpacker unpacker(bits);
-    Surface surface;
-    fields(unpacker, surface);
-    return surface;
-}
-Trapeze LoadWire::unpack_trapeze(WireBits bits, CornerIntensities& intensities) const {
+ViewerMessage LoadWire::unpack_viewer(const WireBits& bits) const { return unpacked<ViewerMessage>(bits); }
+Material LoadWire::unpack_features(const WireBits& bits) const { return unpacked<Material>(bits); }
+Polygon LoadWire::unpack_polygon(const WireBits& bits) const { return unpacked<Polygon>(bits); }
+Surface LoadWire::unpack_surface(const WireBits& bits) const { return unpacked<Surface>(bits); }
+Trapeze LoadWire::unpack_trapeze(const WireBits& bits, CornerIntensities& intensities) const {
     Unpacker unpacker(bits);
     Trapeze trapeze;
     fields(unpacker, trapeze, intensities);
     return trapeze;
 }
-Span LoadWire::unpack_span(WireBits bits) const {
-    Unpacker unpacker(bits);
-    Span span;
-    fields(unpacker, span);
-    return span;
-}
+Span LoadWire::unpack_span(const WireBits& bits) const { return unpacked<Span>(bits); }
 
 std::vector<WireField> LoadWire::layout(LoadType type) const {
     Namer namer;

@@ -44,17 +44,21 @@ class LoadWire {
     WireBits pack(const Span& span) const;
     WireBits end_of_scene() const;
 
-    ViewerMessage unpack_viewer(WireBits bits) const;
-    Material unpack_features(WireBits bits) const;
-    Polygon unpack_polygon(WireBits bits) const;
-    Surface unpack_surface(WireBits bits) const;
-    Trapeze unpack_trapeze(WireBits bits, CornerIntensities& intensities) const;
-    Span unpack_span(WireBits bits) const;
+    ViewerMessage unpack_viewer(const WireBits& bits) const;
+    Material unpack_features(const WireBits& bits) const;
+    Polygon unpack_polygon(const WireBits& bits) const;
+    Surface unpack_surface(const WireBits& bits) const;
+    Trapeze unpack_trapeze(const WireBits& bits, CornerIntensities& intensities) const;
+    Span unpack_span(const WireBits& bits) const;
 
     /// The layouts; of a message with edges, vertices or sources with one of them.
     std::vector<WireField> layout(LoadType type) const;
 
   private:
+    template <typename... Parts>
+    WireBits packed(Parts... parts) const;
+    template <typename Message>
+    Message unpacked(const WireBits& bits) const;
     template <typename Archive>
     void fields(Archive& archive, ViewerMessage& viewer) const;
     template <typename Archive>

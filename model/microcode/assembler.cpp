@@ -16,10 +16,14 @@ Assembler::Assembler(std::string name, const Datapath& datapath, Rounding roundi
     program_.rounding = rounding;
 }
 
-MicroInstruction& Assembler::emit(Op op) {
+MicroInstruction& Assembler::emit(Op op, RegisterIndex target, RegisterIndex a, RegisterIndex b) {
     program_.instructions.emplace_back();
-    program_.instructions.back().op = op;
-    return program_.instructions.back();
+    MicroInstruction& i = program_.instructions.back();
+    i.op = op;
+    i.target = target;
+    i.a = a;
+    i.b = b;
+    return i;
 }
 
 RegisterIndex Assembler::reg(const std::string& name, int bits, int fraction) {
@@ -53,10 +57,7 @@ RegisterIndex Assembler::constants(const std::string& name, const std::vector<st
 
 void Assembler::fetch(RegisterIndex target, RegisterIndex array, RegisterIndex number) {
     same_fraction(target, array);
-    MicroInstruction& i = emit(Op::fetch);
-    i.target = target;
-    i.a = array;
-    i.b = number;
+    emit(Op::fetch, target, array, number);
 }
 
 void Assembler::store(RegisterIndex array, RegisterIndex number, RegisterIndex a) {
@@ -127,39 +128,23 @@ void Assembler::half_sum(RegisterIndex target, RegisterIndex c, const std::vecto
 }
 
 void Assembler::halve(RegisterIndex target, RegisterIndex a) {
-    MicroInstruction& load = emit(Op::load);
-    load.a = a;
-    MicroInstruction& out = emit(Op::round);
-    out.target = target;
-    out.shift = 1;
+    emit(Op::load, 0, a);
+    emit(Op::round, target).shift = 1;
 }
 
-void Assembler::reinterpret(RegisterIndex target, RegisterIndex a) {
-    MicroInstruction& i = emit(Op::move);
-    i.target = target;
-    i.a = a;
-}
+void Assembler::reinterpret(RegisterIndex target, RegisterIndex a) { emit(Op::move, target, a); }
 
-void Assembler::absolute_of(RegisterIndex target, RegisterIndex a) {
-    MicroInstruction& i = emit(Op::absolute);
-    i.target = target;
-    i.a = a;
-}
+void Assembler::absolute_of(RegisterIndex target, RegisterIndex a) { emit(Op::absolute, target, a); }
 
 void Assembler::move(RegisterIndex target, RegisterIndex a) {
     same_fraction(target, a);
-    MicroInstruction& i = emit(Op::move);
-    i.target = target;
-    i.a = a;
+    emit(Op::move, target, a);
 }
 
 void Assembler::add(RegisterIndex target, RegisterIndex a, RegisterIndex b) {
     same_fraction(a, b);
     same_fraction(target, a);
-    MicroInstruction& i = emit(Op::add);
-    i.target = target;
-    i.a = a;
-    i.b = b;
+    emit(Op::add, target, a, b);
 }
 
 void Assembler::subtract(RegisterIndex target, RegisterIndex a, RegisterIndex b) {
@@ -178,11 +163,8 @@ void Assembler::most(RegisterIndex target, RegisterIndex a, RegisterIndex b) {
 }
 
 void Assembler::round(RegisterIndex target, RegisterIndex a) {
-    MicroInstruction& load = emit(Op::load);
-    load.a = a;
-    MicroInstruction& out = emit(Op::round);
-    out.target = target;
-    out.shift = program_.registers[a].fraction - program_.registers[target].fraction;
+    emit(Op::load, 0, a);
+    emit(Op::round, target).shift = program_.registers[a].fraction - program_.registers[target].fraction;
 }
 
 void Assembler::round_down(RegisterIndex target, RegisterIndex a) {
@@ -220,17 +202,10 @@ void Assembler::absolute(RegisterIndex target, RegisterIndex a) {
     program_.instructions.back().op = Op::absolute;
 }
 
-void Assembler::count(RegisterIndex target, RegisterIndex a) {
-    MicroInstruction& i = emit(Op::count);
-    i.target = target;
-    i.a = a;
-}
+void Assembler::count(RegisterIndex target, RegisterIndex a) { emit(Op::count, target, a); }
 
 void Assembler::low(RegisterIndex target, RegisterIndex a, int bits) {
-    MicroInstruction& i = emit(Op::low);
-    i.target = target;
-    i.a = a;
-    i.shift = bits;
+    emit(Op::low, target, a).shift = bits;
 }
 
 void Assembler::high(RegisterIndex target, RegisterIndex a, int shift) {
@@ -239,10 +214,7 @@ void Assembler::high(RegisterIndex target, RegisterIndex a, int shift) {
 }
 
 void Assembler::bit(RegisterIndex target, RegisterIndex a, RegisterIndex number) {
-    MicroInstruction& i = emit(Op::bit);
-    i.target = target;
-    i.a = a;
-    i.b = number;
+    emit(Op::bit, target, a, number);
 }
 
 void Assembler::join(RegisterIndex target, RegisterIndex a, int shift, RegisterIndex b) {
@@ -252,10 +224,10 @@ void Assembler::join(RegisterIndex target, RegisterIndex a, int shift, RegisterI
     MicroInstruction& add = emit(Op::take_off);
     add.a = b;
     add.value = 1;
-    emit(Op::round).target = target;
+    emit(Op::round, target);
 }
 
-void Assembler::keep(RegisterIndex target) { emit(Op::round).target = target; }
+void Assembler::keep(RegisterIndex target) { emit(Op::round, target); }
 
 void Assembler::scale_sum(RegisterIndex target, RegisterIndex whole, RegisterIndex part, RegisterIndex by) {
     const auto& r = program_.registers;
@@ -290,14 +262,10 @@ void Assembler::divide(const std::string& name, RegisterIndex target, RegisterIn
     emit(Op::clear);
     for (int digit = digits - 1; digit >= 0; --digit) {
         const std::string next = name + " digit " + std::to_string(digit);
-        MicroInstruction& twice = emit(Op::add);
-        twice.target = twice.a = twice.b = rest;
+        emit(Op::add, rest, rest, rest);
         jump_to(Op::jump_less, rest, by, next);
-        MicroInstruction& off = emit(Op::subtract);
-        off.target = off.a = rest;
-        off.b = by;
-        MicroInstruction& set = emit(Op::take_off);
-        set.a = one;
+        emit(Op::subtract, rest, rest, by);
+        MicroInstruction& set = emit(Op::take_off, 0, one);
         set.value = 1;
         set.shift = digit;
         label(next);
@@ -312,9 +280,7 @@ void Assembler::label(const std::string& name) {
 
 void Assembler::jump_to(Op op, RegisterIndex a, RegisterIndex b, const std::string& to) {
     jumps_.emplace_back(program_.instructions.size(), to);
-    MicroInstruction& i = emit(op);
-    i.a = a;
-    i.b = b;
+    emit(op, 0, a, b);
 }
 
 void Assembler::jump(const std::string& to) { jump_to(Op::jump, 0, 0, to); }

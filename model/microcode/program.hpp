@@ -237,7 +237,9 @@ class Assembler {
     static constexpr RegisterIndex none = ~RegisterIndex(0);
 
   private:
-    MicroInstruction& emit(MicroInstruction::Op op);
+    /// What an instruction does not use is 0.
+    MicroInstruction& emit(MicroInstruction::Op op, RegisterIndex target = 0, RegisterIndex a = 0,
+                           RegisterIndex b = 0);
     /// accumulator = c + the products; returns its fraction bits.
     int accumulate(RegisterIndex c, const std::vector<Factor>& products);
     void jump_to(MicroInstruction::Op op, RegisterIndex a, RegisterIndex b, const std::string& to);

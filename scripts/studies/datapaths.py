@@ -1,10 +1,7 @@
 """Runs scenes with the cycles of each datapath and writes what that makes of a frame, and which units bind it."""
 import argparse
-import concurrent.futures
 import csv
-import hashlib
 import json
-import os
 import sys
 
 from studies import programs
@@ -85,17 +82,9 @@ def main(root, words):
     folder = programs.spd_folder("datapaths", root, options.folder)
     scenes = {s: folder / f"{s}.nff" if s != "still_life" else root / "scenes" / "still_life.nff" for s in SCENES}
     out = programs.made(options.out)
-    program = hashlib.sha256((root / "build" / "raycell").read_bytes()).hexdigest()[:12]
-    cache = out / "cache" / f"datapaths-{program}"
-    cache.mkdir(parents=True, exist_ok=True)
+    cache = programs.cache_of(root, out, "datapaths")
     jobs = [(s, d) for s in SCENES for d in DATAPATHS]
-    results = {}
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        futures = {pool.submit(run, root, scenes, cache, *job): job for job in jobs}
-        for done, future in enumerate(concurrent.futures.as_completed(futures), 1):
-            results[futures[future]] = future.result()
-            print(f"\r{done} of {len(jobs)} runs", end="", file=sys.stderr, flush=True)
-    print(file=sys.stderr)
+    results = programs.on_all_cores(lambda *job: run(root, scenes, cache, *job), jobs)
     for scene in SCENES:  # a picture hangs on no cost
         if len({results[scene, d]["hash"]["image"] for d in DATAPATHS}) != 1:
             sys.exit(f"datapaths: the picture of {scene} differs between datapaths")

@@ -1,11 +1,7 @@
 """Runs the ladder of hit tests over the scenes and writes its tables and its picture."""
 import argparse
-import concurrent.futures
 import csv
-import hashlib
 import json
-import os
-import sys
 
 from studies import programs
 
@@ -74,17 +70,9 @@ def main(root, words):
     options = parser.parse_args(words)
     folder = programs.spd_folder("ladder", root, options.folder)
     out = programs.made(options.out)
-    program = hashlib.sha256((root / "build" / "raycell").read_bytes()).hexdigest()[:12]
-    cache = out / "cache" / f"ladder-{program}"
-    cache.mkdir(parents=True, exist_ok=True)
+    cache = programs.cache_of(root, out, "ladder")
     jobs = [(s, r, m) for s in SCENES for r in RUNGS for m in MODES]
-    results = {}
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        futures = {pool.submit(run, root, folder, cache, *job): job for job in jobs}
-        for done, future in enumerate(concurrent.futures.as_completed(futures), 1):
-            results[futures[future]] = future.result()
-            print(f"\r{done} of {len(jobs)} runs", end="", file=sys.stderr, flush=True)
-    print(file=sys.stderr)
+    results = programs.on_all_cores(lambda *job: run(root, folder, cache, *job), jobs)
 
     with open(out / "ladder.csv", "w", newline="") as file:
         writer = csv.writer(file)

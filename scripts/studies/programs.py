@@ -1,6 +1,8 @@
 """How a study runs one program to its end and measures its cost. Sweeps, which run many at a time and can be stopped,
 have their own way in sweeps/runs.py."""
+import concurrent.futures
 import dataclasses
+import hashlib
 import json
 import os
 import pathlib
@@ -61,6 +63,24 @@ def render(program, scene, *words):
         prefix = pathlib.Path(folder) / "run"
         done = run(program, "render", scene, "--quiet", "-o", prefix, *words)
         return json.loads(prefix.with_suffix(".json").read_text()), done
+
+
+def cache_of(root, out, study):
+    """A folder for finished runs of a study: of this very program, so that a changed one repeats them."""
+    program = hashlib.sha256((root / "build" / "raycell").read_bytes()).hexdigest()[:12]
+    return made(out / "cache" / f"{study}-{program}")
+
+
+def on_all_cores(run, jobs):
+    """Calls run(*job) for all jobs, as many at a time as there are cores. Returns the results by job."""
+    results = {}
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        futures = {pool.submit(run, *job): job for job in jobs}
+        for done, future in enumerate(concurrent.futures.as_completed(futures), 1):
+            results[futures[future]] = future.result()
+            print(f"\r{done} of {len(jobs)} runs", end="", file=sys.stderr, flush=True)
+    print(file=sys.stderr)
+    return results
 
 
 def spd_folder(study, root, folder):

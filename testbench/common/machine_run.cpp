@@ -1,10 +1,13 @@
 #include "testbench/common/machine_run.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <limits>
 
 #include "testbench/common/cell_ranges.hpp"
 #include "testbench/common/entry.hpp"
@@ -15,8 +18,9 @@
 namespace raycell {
 namespace {
 
-/// Memory available to a process, page cache included; only free pages where the system doesn't say.
-double available_bytes() {
+/// Memory that this computer has for a process, page cache included; only free pages where the system doesn't
+/// say.
+double free_bytes() {
     std::ifstream file("/proc/meminfo");
     std::string key;
     double kilobytes = 0;
@@ -25,6 +29,16 @@ double available_bytes() {
         if (key == "MemAvailable:") return kilobytes * 1024;
     }
     return double(sysconf(_SC_AVPHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+}
+
+/// Address space that this process may still take (`ulimit -v`).
+double allowed_bytes() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return std::numeric_limits<double>::infinity();
+    double pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return std::max(double(limit.rlim_cur) - pages * double(sysconf(_SC_PAGESIZE)), 0.0);
 }
 
 /// Memory that grows with the array before anything is loaded: cells with their links, the picture, and its
@@ -53,7 +67,7 @@ std::string gigabytes(double bytes) {
 void check_memory(const RenderOptions& options) {
     constexpr double worth_telling = 1e9;
     const double needed = needed_bytes(options);
-    const double there = available_bytes();
+    const double there = std::min(free_bytes(), allowed_bytes());
     if (needed > there) {
         const bool modules = options.engine == Engine::timed && options.hosts == Hosts::cell;
         throw UsageError("--cells: " + gigabytes(needed) + " would be needed for so many cells, " +

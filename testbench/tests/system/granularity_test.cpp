@@ -1,10 +1,8 @@
 // --granularity and --detail of raycell render and deadlock_tb: files do not depend on the host of the cells.
-#include <unistd.h>
-
 #include <algorithm>
 #include <sstream>
 
-#include "program.hpp"
+#include "limited.hpp"
 
 namespace raycell::system_test {
 namespace {
@@ -89,7 +87,7 @@ TEST(Granularity, DoesNotShowInSyntheticTraffic) {
 }
 
 TEST(Granularity, OfTilesTakesAFractionOfTheMemoryOfModules) {
-    if (sanitized) GTEST_SKIP() << "memory means nothing here";
+    if (sanitized) GTEST_SKIP() << "the sanitizer's own memory would be measured with that of the cells";
     const Workshop workshop;
     const auto bytes = [&](const Words& granularity) {
         const Json report = workshop.report(
@@ -103,12 +101,11 @@ TEST(Granularity, OfTilesTakesAFractionOfTheMemoryOfModules) {
 }
 
 TEST(Granularity, OfModulesIsRefusedWhereTheirMemoryIsNotThere) {
-    constexpr double needed = 16e6 * 8e3;
-    if (double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE)) > needed)
-        GTEST_SKIP() << "there is memory for 4096x4096 modules here";
+    SKIP_WITHOUT_LIMITS();
     const Workshop workshop;
-    const Finished finished =
-        workshop.render(own_scene("cornell.nff"), {"--cells", "4096x4096", "--granularity", "cell"});
+    const Finished finished = run_within(8000, workshop, RAYCELL_PROGRAM,
+                                         {"render", own_scene("cornell.nff").string(), "--cells", "4096x4096",
+                                          "--granularity", "cell", "-o", "results/a"});
     EXPECT_EQ(finished.exit_code, 1);
     EXPECT_TRUE(contains(finished.err, "or --granularity tile")) << finished.err;
     EXPECT_LT(finished.megabytes, 100);
