@@ -59,7 +59,7 @@ void send_load(LinkOut& out, LoadItem& item, Environment& environment) {
 std::optional<LoadItem::Kind> pass_load(LoadingUnit& unit, LinkIn& from, LinkOut* east, CellStore& store,
                                         Environment& environment, CellMeter& meter, int x, Wakeup& wakeup) {
     const Cycle now = environment.scheduler.now();
-    LoadItem* item = unit.work(from, x, environment.costs(), now, wakeup);
+    LoadItem* item = unit.work(from, x, environment.costs(), environment.context.settings.hit, now, wakeup);
     if (!item) return std::nullopt;
     const LoadItem::Kind kind = item->kind;
     // Asked before take(), which advances a span to the next column.

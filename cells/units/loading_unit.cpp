@@ -2,12 +2,13 @@
 
 namespace raycell {
 
-LoadItem* LoadingUnit::work(const LinkIn& from, int x, const CostTable& costs, Cycle now, Wakeup& wakeup) {
+LoadItem* LoadingUnit::work(const LinkIn& from, int x, const CostTable& costs, HitTest rung, Cycle now,
+                            Wakeup& wakeup) {
     const Message message = from.front(0);
     if (message.kind != Message::Kind::load) return nullptr;
     if (item_ != message.load) {  // just arrived
         item_ = message.load;
-        done_ = now + (makes_voxel(*item_, x) ? costs.load_voxel : costs.load_forward);
+        done_ = now + (makes_voxel(*item_, x) ? costs.load_voxel(rung) : costs.load_forward);
     }
     if (now >= done_) return item_;
     wakeup.at(done_);

@@ -11,10 +11,11 @@ namespace raycell {
 
 class LoadingUnit {
   public:
-    /// Works on the oldest message of `from`, in the cell of column x: load_voxel cycles for a span that
-    /// makes a voxel there, load_forward cycles for others. Returns the message when the work is over, null
-    /// before.
-    LoadItem* work(const LinkIn& from, int x, const CostTable& costs, Cycle now, Wakeup& wakeup);
+    /// Works on the oldest message of `from`, in the cell of column x: load_voxel(rung) cycles for a
+    /// span that makes a voxel there, load_forward cycles for others. Returns the message when the work is
+    /// over, null before.
+    LoadItem* work(const LinkIn& from, int x, const CostTable& costs, HitTest rung, Cycle now,
+                   Wakeup& wakeup);
     /// Stores the voxel that the message makes in column x, if any, and advances a span to the next column.
     static void take(LoadItem& item, int x, CellStore& store, const Context& context);
     /// Whether a load message ends in the cell of column x; to be asked before take().

@@ -195,8 +195,9 @@ std::uint64_t loading_timing(const MachineSettings& machine) {
     Put<Hasher> put(hasher);
     put.whole(machine.buffer_depth), put.whole(machine.link_bits);
     const CostTable& c = machine.costs;
-    for (const std::uint32_t cost : {c.load_voxel, c.load_forward, c.geometry_polygon,
-                                     c.precomputation_trapeze, c.distribution_span, c.distribution_pass})
+    for (const std::uint32_t cost :
+         {c.load_depth, c.load_interval, c.load_plane, c.load_mask, c.load_edge, c.load_forward,
+          c.geometry_polygon, c.precomputation_trapeze, c.distribution_span, c.distribution_pass})
         put.whole(cost);
     return hasher.hash();
 }

@@ -196,9 +196,11 @@ MicroProgram voxel_program(const MicroSetting& setting, const DepthLevels& level
         writer.take_corners();
         writer.take_line();
         writer.take_edges();
+        if (rung == HitTest::mask) writer.take_bounds();
         writer.part();
         writer.run(true);
-        writer.cross(rung == HitTest::edge);
+        writer.cross(rung);
+        if (rung == HitTest::mask) writer.mask();
     }
     writer.anchor();
     if (rung == HitTest::interval) writer.slopes();

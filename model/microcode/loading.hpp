@@ -32,17 +32,21 @@ class LoadingWriter {
     void cut();
     /// The lowest and highest depth of a part, its middle and its area.
     void take_measures();
-    /// The whole part: rectangle, lines, measures.
+    /// What a mask needs to know of a part, too.
+    void take_bounds();
+    /// The whole part: rectangle, lines, measures; with what take_bounds() says, if it was called.
     void part();
 
     void take_run();
     /// Levels and ends of the run from "z low" to "z high".
     void run(bool with_room);
-    /// The edges that cross the run; with `held`, as a voxel has them.
-    void cross(bool held);
+    /// The edges that cross the run: rung `edge` holds them, rung `mask` only needs to know which.
+    void cross(HitTest rung);
     void take_edges();
     /// One edge, as a voxel has it.
     void edge();
+    /// The mask and its window.
+    void mask();
     void take_anchor();
     /// Rung `depth`: the run and the middle are the span's depth at the cell's centre.
     void centre();
@@ -58,6 +62,14 @@ class LoadingWriter {
     };
     struct Corner {
         RegisterIndex u, v;
+    };
+    /// One axis of a mask.
+    struct MaskAxis {
+        RegisterIndex from, to, size;               ///< the run's rectangle
+        RegisterIndex low, high;                    ///< the part's bounds
+        RegisterIndex first, last;                  ///< the window, 32nds
+        RegisterIndex border;                       ///< array: where each eighth of the window begins
+        RegisterIndex first_touched, last_touched;  ///< eighths that the bounds touch
     };
 
     RegisterIndex slope(const std::string& name) { return a_.reg(name, f_ + 2, f_); }
@@ -79,6 +91,12 @@ class LoadingWriter {
     int far_bits() const;
     void convert(RegisterIndex target, RegisterIndex a);
     void largest(const std::vector<RegisterIndex>& of, RegisterIndex size, RegisterIndex other);
+    MaskAxis mask_axis(const std::string& axis, RegisterIndex from, RegisterIndex to, RegisterIndex low,
+                       RegisterIndex high);
+    void window(const std::string& axis, const MaskAxis& m);
+    void borders(const std::string& axis, const MaskAxis& m);
+    void touched(const std::string& axis, const MaskAxis& m);
+    void narrow(const MaskAxis& u, const MaskAxis& v);
     void flat_normal(const Vector& base);
     void steep_normal();
 
@@ -103,7 +121,11 @@ class LoadingWriter {
     RegisterIndex near_level_, far_level_, near_, far_, cube_end_, level_step_, last_level_;
     RegisterIndex held_u_, held_v_, anchor_v_, plane_u_, plane_v_, size_, other_size_, scale_, to_normal_;
     Vector normal_base_, normal_du_, normal_dv_, near_base_;
-    RegisterIndex crossings_, held_a_, held_b_, held_c_;
+    RegisterIndex crossings_, held_a_, held_b_, held_c_, from_v_, to_v_, minus_hair_;
+    // The mask.
+    Corner low_{Assembler::none, Assembler::none};
+    Corner high_{Assembler::none, Assembler::none};
+    RegisterIndex crossing_edges_, hair_, one_bit_, eight_, row_, from_column_, to_column_;
 };
 
 }  // namespace raycell

@@ -293,11 +293,22 @@ void LoadingWriter::measure() {
     a_.move(before.v, no_length_);
     a_.move(z_low_, highest);
     a_.move(z_high_, lowest);
+    const bool bounds = low_.u != Assembler::none;
+    if (bounds) {
+        copy(low_, first_);
+        copy(high_, first_);
+    }
     a_.label("measure");
     a_.fetch(p_.u, u_, index);
     a_.fetch(p_.v, v_, index);
     a_.add(sum_u, sum_u, p_.u);
     a_.add(sum_v, sum_v, p_.v);
+    if (bounds) {
+        a_.least(low_.u, low_.u, p_.u);
+        a_.least(low_.v, low_.v, p_.v);
+        a_.most(high_.u, high_.u, p_.u);
+        a_.most(high_.v, high_.v, p_.v);
+    }
     a_.jump_zero(drop_z_, "v is depth");
     value(at, height_, p_);
     a_.jump("depth");

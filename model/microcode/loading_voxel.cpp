@@ -87,26 +87,28 @@ void LoadingWriter::take_edges() {
 
 /// Only the corner where an edge is largest tells whether it reaches the run's rectangle, only the one where
 /// it is least whether it crosses it.
-void LoadingWriter::cross(bool held) {
+void LoadingWriter::cross(HitTest rung) {
+    const bool held = rung == HitTest::edge;
     const RegisterIndex index = number("crossing");
     const Corner most = corner("most");
     const Corner least = corner("least");
     const RegisterIndex at = length("crossing at", 2);
-    const RegisterIndex from_v = a_.reg("from v", v_bits_, f_);
-    const RegisterIndex to_v = a_.reg("to v", v_bits_, f_);
+    from_v_ = a_.reg("from v", v_bits_, f_);
+    to_v_ = a_.reg("to v", v_bits_, f_);
     const std::int64_t hair = std::int64_t(std::floor(scale_by(4 * formats_.unit.step(), f_)));
-    const RegisterIndex minus_hair = a_.constant("minus hair", -hair, 24, f_);
+    minus_hair_ = a_.constant("minus hair", -hair, 24, f_);
     std::array<RegisterIndex, 3> kept{};
     if (held) {
         kept = {a_.array("kept a", 4, formats_.word_bits, formats_.unit.fraction_bits()),
                 a_.array("kept b", 4, formats_.word_bits, formats_.unit.fraction_bits()),
                 a_.array("kept c", 4, formats_.depth.bits(), formats_.depth.fraction_bits())};
     }
-    a_.move(from_v, no_length_);
-    a_.move(to_v, one_length_);
+    if (rung == HitTest::mask) crossing_edges_ = a_.array("crossing edge", 4, 6, 0);
+    a_.move(from_v_, no_length_);
+    a_.move(to_v_, one_length_);
     a_.jump_less(zero_, drop_z_, "rectangle");
-    a_.round_down(from_v, near_);
-    a_.round_down(to_v, far_);
+    a_.round_down(from_v_, near_);
+    a_.round_down(to_v_, far_);
     a_.label("rectangle");
     a_.move(index, zero_);
     a_.move(crossings_, zero_);
@@ -117,8 +119,8 @@ void LoadingWriter::cross(bool held) {
     a_.fetch(line_.c, edge_c_, index);
     for (const bool v : {false, true}) {
         const std::string axis = v ? " v" : " u";
-        const RegisterIndex from = v ? from_v : no_length_;
-        const RegisterIndex to = v ? to_v : one_length_;
+        const RegisterIndex from = v ? from_v_ : no_length_;
+        const RegisterIndex to = v ? to_v_ : one_length_;
         a_.move(v ? most.v : most.u, to);
         a_.move(v ? least.v : least.u, from);
         a_.jump_less(no_length_, v ? line_.b : line_.a, "rises" + axis);
@@ -127,16 +129,20 @@ void LoadingWriter::cross(bool held) {
         a_.label("rises" + axis);
     }
     value(at, line_, most);
-    a_.jump_less(at, minus_hair, "none");
-    if (held) {
+    a_.jump_less(at, minus_hair_, "none");
+    if (held || rung == HitTest::mask) {
         value(at, line_, least);
-        a_.jump_less(at, minus_hair, "crosses");
+        a_.jump_less(at, minus_hair_, "crosses");
         a_.jump("edge done");
         a_.label("crosses");
-        edge();
-        a_.store(kept[0], crossings_, held_a_);
-        a_.store(kept[1], crossings_, held_b_);
-        a_.store(kept[2], crossings_, held_c_);
+        if (held) {
+            edge();
+            a_.store(kept[0], crossings_, held_a_);
+            a_.store(kept[1], crossings_, held_b_);
+            a_.store(kept[2], crossings_, held_c_);
+        } else {
+            a_.store(crossing_edges_, crossings_, index);
+        }
         a_.add(crossings_, crossings_, one_);
         a_.label("edge done");
     }

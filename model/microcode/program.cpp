@@ -49,11 +49,11 @@ int MicroProgram::instruction_bits() const {
     const int operation = 5;
     const int address = bits_for(std::int64_t(registers.size()));
     const int shift = 7;
-    const int rounding = 2;  // shifted by a register, the rounding that is not the machine's
+    const int variants = 2;  // shifted by a register, the rounding that is not the machine's
     const int jump = bits_for(words());
     // A target or the place of a jump, two operands of each multiplier, which parts of them and the sign.
     return operation + std::max(address, jump) + datapath.multipliers * (2 * (address + 2) + 1) + shift +
-           rounding;
+           variants;
 }
 
 std::string MicroProgram::listing() const {

@@ -25,6 +25,10 @@ int widest_operand(const Formats& formats);
 /// axial, nothing else is set), left (reach − t, where reach is not infinite). `depth`: of the cube.
 MicroProgram walk_program(const MicroSetting& setting, double depth);
 
+/// way_out() of a ray that leaves the cube in this cell, and start_outside(). In: x to z, dx to dz, reach, t
+/// (of the crossing), axial (1: it has none). Out: t, x to z, left and reach as the walk's.
+MicroProgram leave_program(const MicroSetting& setting, double depth);
+
 /// Whether a voxel's depth run meets the ray's. In: near, far, low, high. Out: meets (0 or 1).
 MicroProgram run_program(const MicroSetting& setting);
 

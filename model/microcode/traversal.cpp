@@ -12,8 +12,8 @@ std::int64_t raw(double value, const Format& format) { return std::int64_t(value
 
 class WalkWriter {
   public:
-    WalkWriter(const MicroSetting& setting, double depth)
-        : f_(setting.formats()), a_("walk", setting.datapath, setting.numbers.rounding) {
+    WalkWriter(const std::string& program, const MicroSetting& setting, double depth)
+        : f_(setting.formats()), a_(program, setting.datapath, setting.numbers.rounding) {
         const int word = f_.word_bits;
         const int unit = f_.unit.fraction_bits();
         const Format& distance = f_.distance;
@@ -69,19 +69,53 @@ class WalkWriter {
         a_.label("leaves");
         a_.move(flags_, number_[1]);
         a_.label("reach");
-        a_.jump_less(reach_, infinite_, "finite");
-        a_.end();
-        a_.label("finite");
-        a_.difference(left_, reach_, t_);
-        a_.round(reach_, left_);
-        a_.end();
+        shorten();
         a_.label("axial");
         a_.move(flags_, number_[2]);
         a_.end();
         return a_.finish();
     }
 
+    MicroProgram write_leave(OperatorWriter& operators) {
+        const RegisterIndex rest = a_.reg("rest", f_.depth.bits() + 1, f_.depth.fraction_bits());
+        const RegisterIndex axial = a_.reg("axial", 2, 0);
+        const RegisterIndex out = a_.reg("way out", f_.distance.bits(), f_.distance.fraction_bits());
+        const RegisterIndex here = a_.constant("no way", 0, 2, f_.distance.fraction_bits());
+        a_.move(rest, z_);
+        a_.jump_negative(dz_, "way");
+        a_.subtract(rest, depth_, z_);
+        a_.label("way");
+        const OperatorWriter::Float inverse =
+            operators.reciprocal("1/dz", dz_, f_.word_bits, f_.unit.fraction_bits());
+        a_.sum(out, Assembler::none, {{rest, inverse.mantissa}}, inverse.exponent);
+        a_.most(out, out, here);
+        a_.jump_less(number_[0], axial, "out");
+        a_.least(out, out, t_);
+        a_.label("out");
+        a_.move(t_, out);
+        for (const std::size_t axis : {0, 1}) {
+            a_.sum(place_[axis], place_[axis], {{t_, direction_[axis]}});
+            a_.most(place_[axis], place_[axis], zero_);
+            a_.least(place_[axis], place_[axis], one_);
+        }
+        a_.sum(z_, z_, {{t_, dz_}});
+        shorten();
+        return a_.finish();
+    }
+
+    Assembler& assembler() { return a_; }
+
   private:
+    /// What is left of the way to a source, if there is one; the end.
+    void shorten() {
+        a_.jump_less(reach_, infinite_, "finite");
+        a_.end();
+        a_.label("finite");
+        a_.difference(left_, reach_, t_);
+        a_.round(reach_, left_);
+        a_.end();
+    }
+
     /// The distance to the side that the ray leaves over in one axis: its way there times 1/|d|.
     void cross(std::size_t axis, const std::string& label) {
         a_.jump_negative(direction_[axis], label + " back");
@@ -121,7 +155,13 @@ class WalkWriter {
 int widest_operand(const Formats& f) { return std::max(f.distance.bits(), f.depth.bits() + 1); }
 
 MicroProgram walk_program(const MicroSetting& setting, double depth) {
-    return WalkWriter(setting, depth).write();
+    return WalkWriter("walk", setting, depth).write();
+}
+
+MicroProgram leave_program(const MicroSetting& setting, double depth) {
+    WalkWriter writer("leave", setting, depth);
+    OperatorWriter operators(writer.assembler(), setting);
+    return writer.write_leave(operators);
 }
 
 MicroProgram run_program(const MicroSetting& setting) {

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "model/settings/settings.hpp"
+
 namespace raycell {
 
 namespace {
@@ -17,6 +19,7 @@ struct Row {
 /// microcode_tb prints what it counts (--costs); a test compares.
 constexpr Row rows[] = {
     {"walk_step", &CostTable::walk_step, {35, 33, 33, 4}, true},
+    {"leave_cube", &CostTable::leave_cube, {27, 23, 23, 0}, true},
     {"compare_depth", &CostTable::compare_depth, {3, 3, 3, 1}, true},
     {"compare_interval", &CostTable::compare_interval, {3, 3, 3, 2}, true},
     {"enter_run", &CostTable::enter_run, {5, 4, 4, 0}, true},
@@ -32,6 +35,8 @@ constexpr Row rows[] = {
     {"refract", &CostTable::refract, {52, 48, 46, 12}, true},
     {"local_intensity", &CostTable::local_intensity, {24, 24, 21, 6}, true},
     {"per_lit_source", &CostTable::per_lit_source, {33, 33, 32, 14}, true},
+    {"mirror_again", &CostTable::mirror_again, {39, 39, 37, 0}, true},
+    {"light_again", &CostTable::light_again, {47, 46, 44, 0}, true},
     {"reciprocal_newton", &CostTable::reciprocal_newton, {22, 22, 22, 4}, true},
     {"reciprocal_table", &CostTable::reciprocal_table, {16, 16, 16, 2}, true},
     {"reciprocal_rounded", &CostTable::reciprocal_rounded, {109, 109, 109, 20}, true},
@@ -43,8 +48,12 @@ constexpr Row rows[] = {
     {"power_rounded", &CostTable::power_rounded, {60, 60, 60, 60}, false},
     {"route_return", &CostTable::route_return, {3, 3, 3, 1}, true},
     {"backoff", &CostTable::backoff, {64, 64, 64, 64}, false},
-    {"load_voxel", &CostTable::load_voxel, {12, 12, 12, 12}, false},
-    {"load_forward", &CostTable::load_forward, {1, 1, 1, 1}, false},
+    {"load_depth", &CostTable::load_depth, {131, 131, 131, 12}, true},
+    {"load_interval", &CostTable::load_interval, {1909, 1784, 1754, 12}, true},
+    {"load_plane", &CostTable::load_plane, {1927, 1799, 1768, 12}, true},
+    {"load_mask", &CostTable::load_mask, {3172, 2898, 2849, 12}, true},
+    {"load_edge", &CostTable::load_edge, {2097, 1930, 1893, 12}, true},
+    {"load_forward", &CostTable::load_forward, {4, 4, 4, 1}, true},
     {"geometry_polygon", &CostTable::geometry_polygon, {40, 40, 40, 40}, false},
     {"precomputation_trapeze", &CostTable::precomputation_trapeze, {20, 20, 20, 20}, false},
     {"distribution_span", &CostTable::distribution_span, {8, 8, 8, 8}, false},
@@ -79,6 +88,22 @@ std::uint32_t by_method(Iteration method, std::uint32_t newton, std::uint32_t ta
 
 }  // namespace
 
+std::uint32_t CostTable::load_voxel(HitTest rung) const {
+    switch (rung) {
+        case HitTest::depth:
+            return load_depth;
+        case HitTest::interval:
+            return load_interval;
+        case HitTest::plane:
+            return load_plane;
+        case HitTest::mask:
+            return load_mask;
+        case HitTest::edge:
+            break;
+    }
+    return load_edge;
+}
+
 std::uint32_t CostTable::reciprocal(const OperatorSettings& operators) const {
     return by_method(operators.reciprocal, reciprocal_newton, reciprocal_table, reciprocal_rounded);
 }
@@ -98,8 +123,8 @@ void CostTable::set(const std::string& assignment) {
     for (const auto& [entry, member] : entries()) {
         if (entry != name) continue;
         std::uint32_t cycles = 0;
-        // The estimates have no cycles for what is only added to others.
-        const bool part = name == "enter_run" || name == "ray_start";
+        // What the estimates have no cycles for may be left out.
+        const bool part = CostTable(CostBasis::estimate).*member == 0;
         const char* begin = assignment.data() + std::min(assignment.size(), equals + 1);
         const char* end = assignment.data() + assignment.size();
         const auto [stop, error] = std::from_chars(begin, end, cycles);

@@ -8,6 +8,8 @@
 
 namespace raycell {
 
+enum class HitTest;  // settings.hpp
+
 enum class Iteration { newton, table, rounded };      ///< how reciprocal and 1/sqrt are computed
 enum class PowerMethod { tables, schlick, rounded };  ///< how base^exponent is computed
 
@@ -30,12 +32,14 @@ struct OperatorSettings {
 /// hand that the table had before there were programs.
 enum class CostBasis { word, wide, two, estimate };
 
-/// All values are cycles. Override from the command line or the configuration: --cost NAME=CYCLES. What a
-/// microprogram exists for is its mean at words of 20 bits, less the operators that are added apart
-/// (docs/reference/microcode.md); the rest are estimates whatever the basis: power_rounded, backoff, loading.
+/// All values are cycles; 0 stands for free, operators included. Override from the command line or the
+/// configuration: --cost NAME=CYCLES. What a microprogram exists for is its mean at words of 20 bits, less
+/// the operators that are added apart (docs/reference/microcode.md); the rest are estimates whatever the
+/// basis: power_rounded, backoff, and the stages before the array.
 struct CostTable {
     // Traversal unit: the incremental walk (Amanatides & Woo 1987) and the comparisons with voxels.
     std::uint32_t walk_step;         ///< next crossing, position on it, cube test
+    std::uint32_t leave_cube;        ///< where a ray leaves through front or back; plus a reciprocal
     std::uint32_t compare_depth;     ///< compares a voxel's run with the ray's, rung `depth`
     std::uint32_t compare_interval;  ///< the same, the other rungs
     // Per voxel whose run meets the ray's. A reciprocal is added to each.
@@ -53,6 +57,9 @@ struct CostTable {
     std::uint32_t refract;          ///< plus a reciprocal, two roots and a ray's start
     std::uint32_t local_intensity;  ///< ambient and the final sums
     std::uint32_t per_lit_source;   ///< diffuse, R·L; plus its power
+    // What a slot does not keep until its answers are in; each plus a root.
+    std::uint32_t mirror_again;  ///< the mirrored direction, if a source is lit
+    std::uint32_t light_again;   ///< the direction of a lit source
     // Operators, by method (--reciprocal, --root, --power).
     std::uint32_t reciprocal_newton;   ///< look-up, interpolation, two multiplications
     std::uint32_t reciprocal_table;    ///< look-up and interpolation
@@ -67,7 +74,11 @@ struct CostTable {
     std::uint32_t route_return;  ///< an answer from its arrival to an output or home
     std::uint32_t backoff;       ///< shortest wait before a postponed ray is sent again
     // Loading.
-    std::uint32_t load_voxel;    ///< a cell makes its voxel and advances the span
+    std::uint32_t load_depth;  ///< a cell makes its voxel and advances the span, rung `depth`
+    std::uint32_t load_interval;
+    std::uint32_t load_plane;
+    std::uint32_t load_mask;
+    std::uint32_t load_edge;
     std::uint32_t load_forward;  ///< a cell latches or only passes a load message
     std::uint32_t geometry_polygon;
     std::uint32_t precomputation_trapeze;
@@ -75,10 +86,11 @@ struct CostTable {
     std::uint32_t distribution_pass;
     CostBasis basis;  ///< of the entries that are not set apart
 
-    /// Those estimated by hand, until loading is counted, too.
-    CostTable() : CostTable(CostBasis::estimate) {}
+    CostTable() : CostTable(CostBasis::word) {}
     explicit CostTable(CostBasis basis);
 
+    /// Cycles in which a cell makes a voxel of a rung.
+    std::uint32_t load_voxel(HitTest rung) const;
     /// Cycles of an operator, by its method.
     std::uint32_t reciprocal(const OperatorSettings& operators) const;
     std::uint32_t root(const OperatorSettings& operators) const;

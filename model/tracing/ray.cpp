@@ -66,6 +66,12 @@ void cross(Ray& ray, const Crossing& crossing, const Arithmetic& arithmetic) {
     }
 }
 
+double way_out(const Ray& ray, double bound, const Arithmetic& arithmetic) {
+    const double way = arithmetic.product(arithmetic.formats().distance, bound - ray.position.z,
+                                          arithmetic.reciprocal(ray.direction.z));
+    return std::max(way, 0.0);
+}
+
 Crossing border_crossing(const Ray& ray, const Arithmetic& arithmetic) {
     const Crossing crossing = next_crossing(ray, arithmetic);
     if (ray.inverse_x != 0 || ray.inverse_y != 0) return crossing;

@@ -67,6 +67,10 @@ void cross(Ray& ray, const Crossing& crossing, const Arithmetic& arithmetic);
 /// Moves the ray on by t, within its cell.
 void move_along(Ray& ray, double t, const Arithmetic& arithmetic);
 
+/// The distance at which a ray leaves the cube through the depth `bound`, its front or its back. A ray from a
+/// polygon on the cube's face may start slightly outside: it leaves at once, not at a negative distance.
+double way_out(const Ray& ray, double bound, const Arithmetic& arithmetic);
+
 /// The point at distance t, x and y relative to the cell.
 dvec3 point_at(const Ray& ray, double t, const Arithmetic& arithmetic);
 

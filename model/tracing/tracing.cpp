@@ -125,12 +125,8 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
     const double z_end = dz == 0 ? ray.position.z : depth_at(ray, t_end, arithmetic);
     const double bound = dz > 0 ? context.depth : 0;
     if (dz > 0 ? z_end > bound : z_end < bound) {
-        // A ray from a polygon on the cube's face may start slightly outside: it leaves at once, not at a
-        // negative distance.
-        const double t_leave = std::max(arithmetic.product(arithmetic.formats().distance,
-                                                           bound - ray.position.z, arithmetic.reciprocal(dz)),
-                                        0.0);
-        t_end = std::min(t_leave, t_end);
+        t_end = std::min(way_out(ray, bound, arithmetic), t_end);
+        visit.leaves = true;
         visit.event = Visit::Event::leaves_cube;
         visit.hit.t = t_end;
     }
@@ -157,8 +153,10 @@ std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, 
                               : test == HitTest::edge ? costs.compare_edge
                                                       : costs.enter_run;
     const std::uint32_t run = test == HitTest::depth ? costs.compare_depth : costs.compare_interval;
-    return costs.walk_step + made.runs * run +
-           made.tests * (own + costs.reciprocal(settings.numbers.operators)) + made.edges * costs.per_edge;
+    const std::uint32_t reciprocal = costs.reciprocal(settings.numbers.operators);
+    const std::uint32_t leaving = visit.leaves && costs.leave_cube > 0 ? costs.leave_cube + reciprocal : 0;
+    return costs.walk_step + leaving + made.runs * run + made.tests * (own + reciprocal) +
+           made.edges * costs.per_edge;
 }
 
 Beyond beyond_face(const Context& context, Face face) {
@@ -361,9 +359,14 @@ std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const 
     return cycles;
 }
 
-std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, const CostTable& costs) {
-    const std::uint32_t each = costs.per_lit_source + costs.power(context.settings.numbers.operators);
-    return costs.local_intensity + std::uint32_t(std::bitset<64>(lit).count()) * each;
+std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, bool again, const CostTable& costs) {
+    const OperatorSettings& operators = context.settings.numbers.operators;
+    const auto repeated = [&](std::uint32_t cycles) {
+        return again && cycles > 0 ? cycles + costs.root(operators) : 0;
+    };
+    const std::uint32_t each = costs.per_lit_source + costs.power(operators) + repeated(costs.light_again);
+    return costs.local_intensity + (lit != 0 ? repeated(costs.mirror_again) : 0) +
+           std::uint32_t(std::bitset<64>(lit).count()) * each;
 }
 
 Pixel display_cell(const Context& context, const CellStore& store, int x, int y) {

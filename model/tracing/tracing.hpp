@@ -44,6 +44,7 @@ struct Visit {
     CellHit hit;  ///< leaves_cube: its t is the distance to the front or the back
     Comparisons comparisons;
     Event event = Event::forward;
+    bool leaves = false;  ///< it would leave the cube before the cell's side: that took a division
 };
 Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context, const DepthRuns& runs = {});
 
@@ -127,7 +128,8 @@ dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t obj
 
 /// Cycles of the shading unit.
 std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs);
-std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, const CostTable& costs);
+/// `again`: answers were waited for, so directions are computed a second time.
+std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, bool again, const CostTable& costs);
 
 /// A cell's pixel after loading (--stage load): its nearest voxel at the cell's centre along z, without
 /// shadows.

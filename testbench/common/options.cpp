@@ -221,7 +221,7 @@ void OptionTable::costs(CostTable& table) {
                                           "words; or estimates by hand")
         ->group(group_)
         ->check(CLI::IsMember({"word", "wide", "two", "estimate"}))
-        ->default_str("estimate")
+        ->default_str("word")
         ->take_last();
     entries_.push_back({"datapath", [&table, bases] {
                             for (const auto& [name, basis] : bases) {

@@ -165,8 +165,7 @@ LoadItem read_load(const Words& words, FieldReader& reader, LoadItem::Kind kind,
     item.kind = kind;
     fields_of_load(reader, item);
     if (kind != LoadItem::Kind::span) return item;
-    if (auto reader = remark(words, remarks, "object"))
-        reader->number("object", item.span.object, 0xffffffffU);
+    if (auto other = remark(words, remarks, "object")) other->number("object", item.span.object, 0xffffffffU);
     const double dominant = std::abs(item.span.plane.n[item.span.drop]);
     if (!words.exact() && dominant != 1)
         throw GoldenError("field 'axis': expected that of the component of the normal that is 1 or -1");

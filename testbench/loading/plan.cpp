@@ -87,6 +87,7 @@ class Planner {
     }
 
     LoadPlan run() {
+        plan_.voxel_cycles = costs_.load_voxel(picture_.hit);
         broadcast(Kind::setup, 0, bits_.setup(scene_.sources.size()));
         std::int64_t object = -1;
         for (Polygon polygon : scene_.polygons) {
@@ -220,7 +221,7 @@ class Planner {
         cycles_end_[row + std::size_t(span->last) + 1] += on_link;
         row_cycles_[std::size_t(y)] += on_link;
         way += std::uint64_t(span->last + 1) * on_link + std::uint64_t(span->x) * costs_.load_forward +
-               std::uint64_t(span->last - span->x + 1) * costs_.load_voxel;
+               std::uint64_t(span->last - span->x + 1) * plan_.voxel_cycles;
         if (way > plan_.longest_way.cycles) {
             plan_.longest_way = {"the way of a span of polygon " + std::to_string(span->polygon) +
                                      " in row " + std::to_string(y),
@@ -248,7 +249,7 @@ class Planner {
                 reach -= spans_end_[at];
                 making = making + voxels_begin_[at] - spans_end_[at];
                 Need& cell = unit(layout.cell(x, y));
-                cell.add(making, costs_.load_voxel);
+                cell.add(making, plan_.voxel_cycles);
                 cell.add(reach - making + broadcasts_, costs_.load_forward);
             }
         }

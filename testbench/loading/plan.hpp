@@ -30,6 +30,7 @@ struct LoadPlan {
     std::vector<std::uint64_t> polygons;           ///< digest_of() each message that geometry sends, in order
     std::vector<std::uint64_t> trapezes;           ///< the same for precomputation
     std::vector<std::vector<std::uint64_t>> rows;  ///< the same for each row's distributor, to the east
+    std::uint32_t voxel_cycles = 0;                ///< in which a cell makes a voxel
     LoadCounts counts;                             ///< voxels and overflow are not counted here
 
     /// A lower bound on the cycles of loading, and what sets it.

@@ -59,7 +59,7 @@ std::uint32_t LoadWatch::work_at(std::size_t unit, const LoadItem& item) const {
         }
         case UnitGroup::cells: {
             const bool makes_voxel = item.kind == Kind::span && item.span.x == place.x;
-            return makes_voxel ? costs_.load_voxel : costs_.load_forward;
+            return makes_voxel ? plan_.voxel_cycles : costs_.load_forward;
         }
         case UnitGroup::geometry:
         case UnitGroup::precomputation:

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "testbench/microcode/trial_lists.hpp"
-
 namespace raycell {
 
 std::uint32_t table_cycles(const CostTable& costs, const MicroTrial& trial) {
@@ -51,7 +49,7 @@ struct Counter {
         return setting;
     }
 
-    /// Whether an entry is counted into the table: not those of loading.
+    /// Whether an entry is counted into the table.
     static bool in_table(const std::string& entry) {
         const std::vector<std::string> counted = CostTable::counted();
         return std::find(counted.begin(), counted.end(), entry) != counted.end();
@@ -91,19 +89,11 @@ std::map<std::string, std::uint32_t> count_costs(const std::string& datapath, st
     }
     counter.count(schlick, true);
     counter.count(tables, false);
-    counter.entries["compare_depth"] = counter.entries.at("compare_interval");  // the same program
+    // The same programs.
+    counter.entries["compare_depth"] = counter.entries.at("compare_interval");
+    counter.entries["light_again"] = counter.entries.at("source_view");
+    counter.entries["mirror_again"] = counter.entries.at("reflect");
     return counter.entries;
-}
-
-std::map<std::string, std::uint32_t> count_loading(const std::string& datapath, std::uint64_t runs,
-                                                   std::uint64_t seed) {
-    std::map<std::string, std::uint32_t> cycles;
-    for (const auto& trial : loading_trials(Counter{datapath, runs, seed, {}}.setting_of({}))) {
-        const std::string& name = trial->program().name;
-        if (name == "forward" || name.rfind("voxel ", 0) == 0)
-            cycles[name] = std::uint32_t(std::lround(run_trial(*trial, runs, seed).mean));
-    }
-    return cycles;
 }
 
 }  // namespace raycell

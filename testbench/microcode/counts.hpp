@@ -17,10 +17,4 @@ std::uint32_t table_cycles(const CostTable& costs, const MicroTrial& trial);
 std::map<std::string, std::uint32_t> count_costs(const std::string& datapath, std::uint64_t runs,
                                                  std::uint64_t seed);
 
-/// What `load_forward` (the program `forward`) and, at every rung, `load_voxel` ("voxel edge" and so on)
-/// would be, counted in the same way; the table has estimates instead. The mean over spans of random
-/// triangles, half a cell to eight cells wide, one of ten 40 cells.
-std::map<std::string, std::uint32_t> count_loading(const std::string& datapath, std::uint64_t runs,
-                                                   std::uint64_t seed);
-
 }  // namespace raycell

@@ -439,6 +439,15 @@ class VoxelTrial : public SpanTrial {
         if (made) expect_voxel(store);
         expect_advanced();
     }
+    void expect_mask(const Voxel& voxel) const {
+        const char* const ends[] = {"mask u window from", "mask u window to", "mask v window from",
+                                    "mask v window to"};
+        for (std::size_t i = 0; i < 4; ++i) expect(ends[i], take(ends[i]), voxel.window[i]);
+        for (unsigned row = 0; row < 8; ++row) {
+            const std::string name = "mask row " + std::to_string(row);
+            expect(name, take(name), double(voxel.mask >> (8 * row) & 0xff));
+        }
+    }
     void expect_voxel(const CellStore& store) {
         const Voxel& voxel = store.voxels[0];
         const HitTest rung = spans_.settings.hit;
@@ -450,6 +459,7 @@ class VoxelTrial : public SpanTrial {
         if (rung != HitTest::depth) expect("twice area", take("twice area"), 2 * voxel.area);
         if (rung == HitTest::interval) expect_slopes(voxel);
         if (rung >= HitTest::plane) expect_plane(voxel);
+        if (rung == HitTest::mask) expect_mask(voxel);
         if (rung != HitTest::edge) return;
         expect("crossings", take("crossings"), double(store.edges.size()));
         for (std::size_t i = 0; i < store.edges.size(); ++i) {
@@ -474,10 +484,12 @@ TrialList loading_trials(const MicroSetting& s) {
     all.push_back(std::make_unique<PlaneOfVoxelTrial>(s));
     all.push_back(std::make_unique<NormalOfVoxelTrial>(s, Normals::linear));
     all.push_back(std::make_unique<NormalOfVoxelTrial>(s, Normals::voxel));
-    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::depth, Normals::voxel, MicroCost{}));
-    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::interval, Normals::linear, MicroCost{}));
-    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::plane, Normals::linear, MicroCost{}));
-    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::edge, Normals::linear, MicroCost{"load_voxel"}));
+    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::depth, Normals::voxel, MicroCost{"load_depth"}));
+    all.push_back(
+        std::make_unique<VoxelTrial>(s, HitTest::interval, Normals::linear, MicroCost{"load_interval"}));
+    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::plane, Normals::linear, MicroCost{"load_plane"}));
+    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::mask, Normals::linear, MicroCost{"load_mask"}));
+    all.push_back(std::make_unique<VoxelTrial>(s, HitTest::edge, Normals::linear, MicroCost{"load_edge"}));
     return all;
 }
 

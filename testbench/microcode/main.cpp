@@ -82,23 +82,6 @@ void try_all(const MicroSetting& setting, const Options& o, bool& listed) {
     }
 }
 
-/// Loading, whose entries of the table are estimates: what they would be.
-void print_loading(const Options& o) {
-    std::vector<std::map<std::string, std::uint32_t>> counts;
-    for (const char* datapath : {"word", "wide", "two"})
-        counts.push_back(count_loading(datapath, o.runs, o.seed));
-    const CostTable table;
-    std::cout
-        << "\nLoading: the table keeps estimates.\n\n| program | entry | in the table | word | wide | two "
-           "|\n|---|---|---|---|---|---|\n";
-    for (const auto& [program, cycles] : counts[0]) {
-        const bool forward = program == "forward";
-        std::cout << "| " << program << " | `" << (forward ? "load_forward" : "load_voxel") << "` | "
-                  << (forward ? table.load_forward : table.load_voxel) << " | " << cycles << " | "
-                  << counts[1].at(program) << " | " << counts[2].at(program) << " |\n";
-    }
-}
-
 /// Every counted entry, by datapath: counted, and in the table.
 void print_costs(const Options& o) {
     const std::vector<std::pair<std::string, CostBasis>> bases = {
@@ -117,7 +100,6 @@ void print_costs(const Options& o) {
             std::cout << " " << counts[i].at(name) << " | " << CostTable(bases[i].second).*member << " |";
         std::cout << "\n";
     }
-    print_loading(o);
 }
 
 int run(const Options& o) {

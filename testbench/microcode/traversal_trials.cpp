@@ -4,10 +4,21 @@
 
 #include "model/tracing/intersect.hpp"
 #include "model/tracing/ray.hpp"
+#include "model/tracing/tracing.hpp"
 #include "testbench/microcode/trial_lists.hpp"
 
 namespace raycell {
 namespace {
+
+double depth_of(const MicroSetting& s) { return s.formats().depth.hold(s.extent.depth); }
+
+Ray any_ray(MicroRandom& random, double depth, const Arithmetic& arithmetic) {
+    const Formats& f = arithmetic.formats();
+    Ray ray;
+    set_direction(ray, any_direction(random, arithmetic), arithmetic);
+    ray.position = {random.word(f.unit, 0, 1), random.word(f.unit, 0, 1), random.word(f.depth, 0, depth)};
+    return ray;
+}
 
 class WalkTrial : public MicroTrial {
   public:
@@ -16,14 +27,9 @@ class WalkTrial : public MicroTrial {
     WalkTrial(const MicroSetting& s) : WalkTrial(s, walk_program(s, depth_of(s))) {}
 
   private:
-    static double depth_of(const MicroSetting& s) { return s.formats().depth.hold(s.extent.depth); }
-
     void draw(MicroRandom& random) override {
         const Formats& f = arithmetic_.formats();
-        ray_ = Ray();
-        set_direction(ray_, any_direction(random, arithmetic_), arithmetic_);
-        ray_.position = {random.word(f.unit, 0, 1), random.word(f.unit, 0, 1),
-                         random.word(f.depth, 0, depth_)};
+        ray_ = any_ray(random, depth_, arithmetic_);
         if (random.chance(0.5)) ray_.reach = arithmetic_.hold_reach(random.word(f.reach, 0, f.reach.most()));
         ray_.fresh = false;
         put("", ray_.position);
@@ -57,6 +63,51 @@ class WalkTrial : public MicroTrial {
     }
 
     double depth_;
+    Ray ray_;
+};
+
+/// A ray that leaves the cube through its front or back, before or when it comes to the cell's side.
+class LeaveTrial : public MicroTrial {
+  public:
+    explicit LeaveTrial(const MicroSetting& s)
+        : MicroTrial(s, leave_program(s, depth_of(s)), {"leave_cube", 1, 1}), depth_(depth_of(s)) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        const Formats& f = arithmetic_.formats();
+        do {
+            ray_ = any_ray(random, 0, arithmetic_);
+            crossing_ = next_crossing(ray_, arithmetic_).t;
+            const double way = ray_.direction.z * std::min(crossing_, depth_);
+            const double bound = ray_.direction.z > 0 ? depth_ : 0;
+            ray_.position.z = random.chance(0.05) ? bound + random.uniform(-1, 1) * way
+                                                  : bound - random.uniform(0, 1) * way;
+            ray_.position.z = f.depth.hold(ray_.position.z);
+        } while (!leaves());
+        if (random.chance(0.5)) ray_.reach = arithmetic_.hold_reach(random.word(f.reach, 0, f.reach.most()));
+        put("", ray_.position);
+        put("d", ray_.direction);
+        put("reach", std::isinf(ray_.reach) ? f.reach.most() : ray_.reach);
+        put("axial", std::isinf(crossing_));
+        if (!std::isinf(crossing_)) put("t", crossing_);
+    }
+    bool leaves() const {
+        if (ray_.direction.z == 0) return false;
+        const double end = depth_at(ray_, crossing_, arithmetic_);
+        return ray_.direction.z > 0 ? end > depth_ : end < 0;
+    }
+    void compare() override {
+        const double bound = ray_.direction.z > 0 ? depth_ : 0;
+        const double t = std::min(way_out(ray_, bound, arithmetic_), crossing_);
+        expect("t", take("t"), t);
+        Ray out = ray_;
+        start_outside(out, t, arithmetic_);
+        expect("", out.position);
+        const Format& reach = arithmetic_.formats().reach;
+        expect("reach", take("reach"), std::isinf(out.reach) ? reach.most() : out.reach);
+        if (!std::isinf(ray_.reach)) expect("left <= 0", take("left") <= 0, ray_.reach <= t);
+    }
+    double depth_, crossing_ = 0;
     Ray ray_;
 };
 
@@ -94,10 +145,7 @@ class EnterTrial : public MicroTrial {
     void draw(MicroRandom& random) override {
         const Formats& f = arithmetic_.formats();
         const double depth = f.depth.most() / 8;
-        ray_ = Ray();
-        set_direction(ray_, any_direction(random, arithmetic_), arithmetic_);
-        ray_.position = {random.word(f.unit, 0, 1), random.word(f.unit, 0, 1),
-                         random.word(f.depth, 0, depth)};
+        ray_ = any_ray(random, depth, arithmetic_);
         end_ = random.chance(0.1) ? random.word(f.distance, 0, 2) : f.distance.hold(random.uniform(0.1, 1.5));
         const double z0 = ray_.position.z;
         const double z1 = depth_at(ray_, end_, arithmetic_);
@@ -145,10 +193,7 @@ class PlaneTrial : public MicroTrial {
     void draw(MicroRandom& random) override {
         const Formats& f = arithmetic_.formats();
         const double depth = f.depth.most() / 8;
-        ray_ = Ray();
-        set_direction(ray_, any_direction(random, arithmetic_), arithmetic_);
-        ray_.position = {random.word(f.unit, 0, 1), random.word(f.unit, 0, 1),
-                         random.word(f.depth, 0, depth)};
+        ray_ = any_ray(random, depth, arithmetic_);
         ray_.fresh = random.chance(0.3);
         if (random.chance(0.5)) ray_.leaves = 7;
         end_ = random.word(f.distance, 0, 2);
@@ -238,6 +283,7 @@ class EdgeTrial : public MicroTrial {
 TrialList traversal_trials(const MicroSetting& s) {
     TrialList all;
     all.push_back(std::make_unique<WalkTrial>(s));
+    all.push_back(std::make_unique<LeaveTrial>(s));
     all.push_back(std::make_unique<RunTrial>(s));
     all.push_back(std::make_unique<EnterTrial>(s, HitTest::depth));
     all.push_back(std::make_unique<EnterTrial>(s, HitTest::interval));

@@ -32,7 +32,7 @@ class Loading:
         makes = span and item.x1 == self.x
         if self.loading is not item:
             self.loading = item
-            self.load_done = now + self.S.cost("load_voxel" if makes else "load_forward")
+            self.load_done = now + self.S.cost("load_" + self.S.option["hit"] if makes else "load_forward")
             self.moved += 1
         ends = (item.last if span else self.S.width - 1) == self.x
         if now < self.load_done or not (ends or self.outputs[EAST].can_send(0, now)):

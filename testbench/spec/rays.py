@@ -154,7 +154,10 @@ class Visit:
         rung = S.option["hit"]
         run = S.cost("compare_depth" if rung == "depth" else "compare_interval")
         test = S.cost("reciprocal") + S.cost("compare_" + rung if rung in ("plane", "mask", "edge") else "enter_run")
-        return S.cost("walk_step") + self.runs * run + self.tests * test + self.edges * S.cost("per_edge")
+        leaving = S.cost("leave_cube") if self.t_leave is not None else 0
+        if leaving:
+            leaving += S.cost("reciprocal")
+        return S.cost("walk_step") + leaving + self.runs * run + self.tests * test + self.edges * S.cost("per_edge")
 
 
 def visit(ray, voxels, S):

@@ -37,8 +37,14 @@ class Setup:
             cycles += S.cost("refract") + S.cost("reciprocal") + 2 * root + start
         return cycles
 
-    def lit_cycles(self, S, lit):
-        return S.cost("local_intensity") + sum(k in lit for k in self.facing) * (S.cost("per_lit_source") + S.cost("power"))
+    def lit_cycles(self, S, lit, waited):
+        """`waited`: the hit was in a slot, which keeps no directions."""
+        lights = sum(k in lit for k in self.facing)
+        cycles = S.cost("local_intensity") + lights * (S.cost("per_lit_source") + S.cost("power"))
+        for name, times in (("mirror_again", min(lights, 1)), ("light_again", lights)):
+            if waited and S.cost(name) > 0:
+                cycles += times * (S.cost(name) + S.cost("root"))
+        return cycles
 
 
 def hit_normal(S, local, voxel):

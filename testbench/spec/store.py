@@ -111,7 +111,7 @@ class Store:
         setup = Setup(S, packet.ray, t, self.voxels[index], self.x, self.y)
         lit = set() if self.shadows == "per-hit" else set(self.voxel_lit[index])
         self.direct, self.direct_result = packet, intensity_of(S, setup, lit, [[ZERO] * 3] * 2)
-        self.job, self.job_done = "direct", now + setup.cycles(S) + setup.lit_cycles(S, lit)
+        self.job, self.job_done = "direct", now + setup.cycles(S) + setup.lit_cycles(S, lit, False)
 
     # The shading unit
 
@@ -134,7 +134,7 @@ class Store:
                 slot.lit = set(self.voxel_lit[slot.voxel()])
             slot.result = intensity_of(S, slot.setup, slot.lit, slot.colour)
             slot.state, self.job = "in_shading", "shade"
-            cycles = slot.setup.lit_cycles(S, slot.lit)
+            cycles = slot.setup.lit_cycles(S, slot.lit, True)
         elif fresh:
             slot = min(fresh, key=lambda slot: slot.since)
             t, index = slot.packet.visit.hit

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "elaboration.hpp"
+#include "estimates.hpp"
 
 namespace raycell {
 namespace {
@@ -15,7 +16,7 @@ class Machines {
         settings_.width = settings_.height = 8;
         settings_.shadows = shadows;
         placed_ = place_own_scene("facing_mirrors", settings_);
-        MachineSettings machine;
+        MachineSettings machine = estimated_machine();
         machine.buffer_depth = 2;
         machine.ray_store = waiting_generations(Context(placed_->scene, settings_));  // fewest that end
         machine.exterior_processors = 3;  // few and slow: rays wait in them

@@ -2,6 +2,7 @@
 // one that does.
 #include "../truth/hand_made.hpp"
 #include "elaboration.hpp"
+#include "estimates.hpp"
 
 namespace raycell {
 namespace {
@@ -17,7 +18,7 @@ class Variants {
         golden_ = image_hash(UntimedMachine(scene, settings, exterior).render());
         std::vector<Machine*> machines;  // never destroyed: SystemC destroys ports in quadratic time
         for (const Change& change : changes) {
-            MachineSettings machine;
+            MachineSettings machine = estimated_machine();
             machine.costs.backoff = 4;  // short, since each livelock must be waited for
             change(machine);
             const std::string name = "machine_" + std::to_string(machines.size());

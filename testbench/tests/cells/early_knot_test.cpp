@@ -1,5 +1,6 @@
 // Knots in machines that still run: what is locked in one cycle stays locked, whatever else moves.
 #include "elaboration.hpp"
+#include "estimates.hpp"
 #include "knot_check.hpp"
 #include "model/tracing/traffic.hpp"
 
@@ -9,7 +10,7 @@ namespace {
 struct Drawn {
     TrafficSettings traffic;
     PictureSettings picture;
-    MachineSettings machine;
+    MachineSettings machine = estimated_machine();  // slower ones lock less
     std::unique_ptr<SyntheticTraffic> drawn;
     CellScene scene;
     std::string text;

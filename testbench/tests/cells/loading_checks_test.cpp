@@ -3,6 +3,7 @@
 #include <map>
 
 #include "elaboration.hpp"
+#include "estimates.hpp"
 #include "testbench/loading/checks.hpp"
 #include "testbench/loading/random_scene.hpp"
 #include "testbench/loading/tap.hpp"
@@ -228,7 +229,7 @@ TEST(StoreCheck, FailsWhereOneBitOfOneVoxelDiffersAndSaysWhere) {
 TEST(LoadCycles, OneTriangleInOneCellTakesTheCyclesOfItsMessages) {
     expect_first_elaboration();
     const PictureSettings picture = picture_of(1, 1);
-    MachineSettings settings;
+    MachineSettings settings = estimated_machine();
     CellScene scene;
     scene.frame.depth = 8;
     scene.frame.depth_levels = picture.depth_levels;

@@ -9,7 +9,8 @@ namespace raycell {
 
 /// Cell (1, 1) of a 3x3 array in the trace phase, with a link to it and one from it on each side.
 struct LoneCell {
-    explicit LoneCell(const MachineSettings& machine_settings = {}, const CellScene& cell_scene = empty(100))
+    explicit LoneCell(const MachineSettings& machine_settings = estimated_machine(),
+                      const CellScene& cell_scene = empty(100))
         : scene(cell_scene), machine(machine_settings), picture(3, 3) {
         expect_first_elaboration();
         settings.width = settings.height = 3;

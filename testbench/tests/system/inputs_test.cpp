@@ -103,7 +103,7 @@ std::uint64_t seed() {
 TEST(Inputs, ASavedArrayWithAWrongNumberAndARightChecksumNeverCrashes) {
     const Workshop workshop;
     const auto scene = own_scene("still_life.nff");
-    const Words words = {"--cells", "8x6", "--max-cycles", "1000000"};
+    const Words words = {"--cells", "8x6", "--max-cycles", "10000000"};
     ASSERT_EQ(workshop.render(scene, joined(words, {"--save-array", "array"})).exit_code, 0);
     const std::vector<std::uint64_t> whole = numbers_of(read_text(workshop.path() / "array"));
     ASSERT_EQ(bytes_of(whole), read_text(workshop.path() / "array")) << "the checksum is as it was";

@@ -70,7 +70,7 @@ TEST(LoadedArrayFile, OfOtherBuffersLinksOrCostsServesWithAWarning) {
     ASSERT_EQ(render(workshop, {"--save-array", "results/array"}, "saved").exit_code, 0);
     const Json saved = told(workshop, "saved");
     for (const Words& other :
-         {Words{"--buffer", "3"}, Words{"--link-bits", "40"}, Words{"--cost", "load_voxel=90"}}) {
+         {Words{"--buffer", "3"}, Words{"--link-bits", "40"}, Words{"--cost", "load_edge=90"}}) {
         SCOPED_TRACE(other.front());
         const Finished finished = render(workshop, joined(other, {"--load-array", "results/array"}), "b");
         ASSERT_EQ(finished.exit_code, 0);
@@ -181,14 +181,14 @@ TEST(LoadedArrayFile, IsNotLeftHalfWritten) {
 
 TEST(LoadedArrayFile, OfALockedRunServesItsSecondRun) {
     const Workshop workshop;
-    const Words words{"--cells",           "24x24",        "--networks",   "split",
+    const Words words{"--cells",           "32x32",        "--networks",   "split",
                       "--vcd-on-deadlock", "--save-array", "results/array"};
     const Finished finished = workshop.render(own_scene("facing_mirrors.nff"), words, "a");
     ASSERT_EQ(finished.exit_code, 3) << finished.err;
     EXPECT_TRUE(fs::exists(workshop.result("a.vcd")));
     const Finished again = workshop.render(
         own_scene("facing_mirrors.nff"),
-        {"--cells", "24x24", "--networks", "split", "--vcd-on-deadlock", "--load-array", "results/array"},
+        {"--cells", "32x32", "--networks", "split", "--vcd-on-deadlock", "--load-array", "results/array"},
         "b");
     ASSERT_EQ(again.exit_code, 3) << again.err;
     EXPECT_EQ(told(workshop, "b"), told(workshop, "a"));

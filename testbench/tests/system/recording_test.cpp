@@ -184,7 +184,7 @@ TEST(Recording, TheRunRepeatedForItsWaveformsRecordsNothing) {
     const Workshop workshop;
     workshop.report(
         own_scene("facing_mirrors.nff"),
-        {"--networks", "split", "--cells", "24x24", "--film", "20", "--rays", "--vcd-on-deadlock"}, 3);
+        {"--networks", "split", "--cells", "32x32", "--film", "20", "--rays", "--vcd-on-deadlock"}, 3);
     for (const std::string& name : workshop.results()) EXPECT_EQ(name.rfind("a.", 0), 0u) << name;
     EXPECT_TRUE(fs::exists(workshop.result("a.vcd")));
     EXPECT_TRUE(fs::exists(workshop.result("a.film.json")));

@@ -131,7 +131,7 @@ TEST(ReportPage, ShowsTwoRunsBesideEachOther) {
 
 TEST(ReportPage, OfTwoRunsSaysWhatIsStuckInTheOneThatLocks) {
     const Workshop workshop;
-    const Words mirrors = {"--cells", "24x24"};
+    const Words mirrors = {"--cells", "32x32"};
     workshop.report(own_scene("facing_mirrors.nff"), joined(mirrors, {"--networks", "split"}), 3);
     workshop.report(own_scene("facing_mirrors.nff"), mirrors, 0, "b");
     const Finished finished = workshop.run_program(script, {"report", "results/a.json", "results/b.json"});

@@ -201,7 +201,8 @@ TEST(Verdict, ALimitOfCyclesHoldsInEveryPhase) {
             expect_verdict(workshop, "cornell.nff", joined(shadows, {"--max-cycles", std::to_string(limit)}),
                            "cycle_limit", 4));
         EXPECT_LE(cut.total, limit);
-        EXPECT_GT(cut.total, limit - 100) << "it stopped long before";
+        // Nothing else may move while a cell makes a voxel.
+        EXPECT_GT(cut.total, limit - 2500) << "it stopped long before";
     }
 }
 

@@ -15,7 +15,7 @@ struct Loads {
     LoadItem item;
     LoadItem* work(int x, Cycle now, Wakeup& wakeup) {
         scheduler.set_now(now);
-        return unit.work(link, x, costs, now, wakeup);
+        return unit.work(link, x, costs, HitTest::mask, now, wakeup);
     }
 };
 
@@ -38,7 +38,7 @@ void expect_work(int x, std::uint32_t CostTable::*cycles) {
     EXPECT_EQ(loads.unit.item(), nullptr);
 }
 
-TEST(LoadingUnit, MakesTheVoxelOfASpanThatHasComeToItsColumn) { expect_work(4, &CostTable::load_voxel); }
+TEST(LoadingUnit, MakesTheVoxelOfASpanThatHasComeToItsColumn) { expect_work(4, &CostTable::load_mask); }
 
 TEST(LoadingUnit, PassesASpanOnThatHasNotComeYet) { expect_work(5, &CostTable::load_forward); }
 
