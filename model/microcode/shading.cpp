@@ -147,13 +147,12 @@ MicroProgram refract_program(const MicroSetting& setting) {
     a.sum(sine, Assembler::none, {{eta_squared, sine}});
     a.subtract(squared, one, sine);
     a.jump_negative(squared, "reflected");
-    a.move(root, zero);
     a.jump_zero(squared, "grazes");
     a.round(held, squared);
     const OperatorWriter::Float inverse_root = operators.root("root", squared, field.fraction_bits());
     a.sum(root, Assembler::none, {{held, inverse_root.mantissa}}, inverse_root.exponent);
     a.subtract(root, zero, root);
-    a.label("grazes");
+    a.label("bent");
     a.sum(across, root, {{eta, cosine}});
     for (std::size_t i = 0; i < 3; ++i) {
         a.sum(way[i], Assembler::none, {{eta, direction[i]}});
@@ -167,8 +166,11 @@ MicroProgram refract_program(const MicroSetting& setting) {
     a.reinterpret(twice, cosine);
     for (std::size_t i = 0; i < 3; ++i) a.sum(way[i], direction[i], {{twice, normal[i]}});
     a.label("unit");
-    operators.normalise("normalise", way, field.bits(), out);
+    operators.normalise("normalise", way, field.bits(), out, "reflected");
     a.end();
+    a.label("grazes");
+    a.move(root, zero);
+    a.jump("bent");
     return a.finish();
 }
 

@@ -48,7 +48,9 @@ bool refract_direction(const ShadePoint& point, double ior, dvec3& out, const Ar
     const double across = arithmetic.mac(formats.field, -arithmetic.square_root(squared), eta, cosine);
     // One rounding: a double does not hold the product of two long words.
     const dvec3 bent_way = arithmetic.along(formats.field, dvec3(0), eta, point.direction);
-    out = arithmetic.normalise(arithmetic.along(formats.field, bent_way, across, point.normal));
+    const dvec3 way = arithmetic.along(formats.field, bent_way, across, point.normal);
+    if (way == dvec3(0)) return false;  // words too short for this index of refraction: nothing is left
+    out = arithmetic.normalise(way);
     return true;
 }
 

@@ -24,24 +24,29 @@ def run(root, scenes, cache, scene, datapath):
         cells = list(csv.DictReader(file))
     report["busiest"] = {unit: max(int(c[f"{unit}_cycles"]) for c in cells) / report["cycles"]["trace"]
                          for unit in ("traversal", "shading")}
+    costs = dict(entry.split("=") for entry in report["config"]["cost"])
+    making = max(int(c["voxels"]) for c in cells) * int(costs["load_" + report["config"]["hit"]])
+    report["making"] = making / report["cycles"]["load"]
     return report
 
 
 def frame_table(results):
-    lines = ["| scene | load | trace: " + " | ".join(f"`{d}`" for d in DATAPATHS) + " | frame: `estimate` | `word` | ratio |",
-             "|---|---|" + "---|" * (len(DATAPATHS) + 3)]
+    lines = ["| scene | load: `estimate` | `word` | trace: " + " | ".join(f"`{d}`" for d in DATAPATHS) +
+             " | frame: `estimate` | `word` | ratio |", "|---|---|---|" + "---|" * (len(DATAPATHS) + 3)]
     for scene in SCENES:
         cycles = [results[scene, d]["cycles"] for d in DATAPATHS]
-        old, new = cycles[0]["total"], cycles[1]["total"]
-        lines.append(f"| {scene} | {cycles[0]['load']:,} | " + " | ".join(f"{c['trace']:,}" for c in cycles) +
-                     f" | {old:,} | {new:,} | {new / old:.2f} |")
+        old, new = cycles[0], cycles[1]
+        lines.append(f"| {scene} | {old['load']:,} | {new['load']:,} | " + " | ".join(f"{c['trace']:,}" for c in cycles) +
+                     f" | {old['total']:,} | {new['total']:,} | {new['total'] / old['total']:.2f} |")
     return "\n".join(lines)
 
 
 def units_of(report):
-    """Shares of the trace in which units are at work."""
-    return {"traversal unit, mean": report["units"]["traversal"]["utilisation"],
-            "of the busiest cell": report["busiest"]["traversal"],
+    """Shares of loading, and of the trace, in which units are at work."""
+    return {"loading: the fullest cell makes its voxels": report["making"],
+            "loading: precomputation": report["stages"]["precomputation"]["utilisation"],
+            "trace: traversal unit, mean": report["units"]["traversal"]["utilisation"],
+            "traversal unit of the busiest cell": report["busiest"]["traversal"],
             "shading unit of the busiest cell": report["busiest"]["shading"],
             "exterior": report["stages"]["exterior"]["utilisation"]}
 
@@ -91,7 +96,7 @@ def main(root, words):
     text = ["# Datapaths\n\nMade by `scripts/study datapaths`: whole frames with the costs that were estimated by hand and with those "
             f"counted on three datapaths ([microcode.md](../reference/microcode.md)), {CELLS} cells, words of 20 bits, otherwise the "
             "default machine. The pictures are equal.\n", frame_table(results),
-            "\n![Cycles of a frame by datapath](datapaths.png)\n\n## What is at work\n\nShares of the trace.\n", unit_table(results)]
+            "\n![Cycles of a frame by datapath](datapaths.png)\n\n## What is at work\n\nShares of loading or of the trace.\n", unit_table(results)]
     (out / "datapaths.md").write_text("\n".join(text) + "\n")
     draw(out, results)
     print((out / "datapaths.md").read_text())

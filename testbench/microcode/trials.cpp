@@ -52,7 +52,12 @@ std::string MicroTrial::cost_name() const {
 int MicroTrial::step(MicroRandom& random) {
     draw(random);
     inputs_ = machine_.values();
-    const int cycles = machine_.run();
+    int cycles = 0;
+    try {
+        cycles = machine_.run();
+    } catch (const std::logic_error& error) {  // a value that its register does not hold, or no end
+        throw MicroDifference(std::string(error.what()) + ", for" + input_text());
+    }
     compare();
     return cycles;
 }

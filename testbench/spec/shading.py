@@ -88,7 +88,10 @@ def refracted(S, s):
         return reflected(S, s)
     across = f.field.hold(eta * cosine - square_root(squared, S))
     way = [f.field.hold(eta * d) for d in s.direction]
-    return normalise([f.field.hold(w + across * n) for w, n in zip(way, s.normal)], S)[0]
+    way = [f.field.hold(w + across * n) for w, n in zip(way, s.normal)]
+    if not any(w != ZERO for w in way):             # short words may leave nothing of it
+        return reflected(S, s)
+    return normalise(way, S)[0]
 
 
 def intensity_of(S, s, lit, answers):

@@ -151,6 +151,20 @@ TEST(Shading, ARayThatIsJustBentAlongTheSurfaceIsNotReflectedTotally) {
     EXPECT_EQ(transmit_direction(point, 1), dvec3(1, 0, 0));
 }
 
+/// Straight through a thin medium, in the shortest words: 64 saturates, and what is left of the bent way is 0.
+TEST(Shading, ARayOfWhichShortWordsLeaveNothingIsReflected) {
+    NumberSettings numbers;
+    numbers.word_bits = 8;
+    const Arithmetic arithmetic(numbers, {128, 128, 200, 0.2});
+    ShadePoint point;
+    point.direction = {0.984375, 0, 0};
+    point.normal = {-1, 0, 0};
+    point.entering = true;
+    dvec3 bent(0);
+    EXPECT_FALSE(refract_direction(point, 0.046875, bent, arithmetic));
+    EXPECT_EQ(transmit_direction(point, 0.046875, arithmetic), reflect_direction(point, arithmetic));
+}
+
 TEST(Costs, OfSchlicksPowerHoldAReciprocalByItsOwnMethod) {
     const CostTable costs;
     for (const Iteration method : {Iteration::newton, Iteration::table, Iteration::rounded}) {
