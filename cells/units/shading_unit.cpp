@@ -44,10 +44,10 @@ std::uint32_t ShadingUnit::shade(Slot& slot, const CellStore& store, const Conte
                                  const CostTable& costs) {
     const CellHit& hit = slot.packet->visit.hit;
     if (context.settings.shadows != Shadows::per_hit) slot.lit = store.lit[hit.voxel];
-    slot.result = shade_hit(context, slot.setup, store.voxels[hit.voxel].object, slot.lit, slot.colour[0],
-                            slot.colour[1]);
+    const std::uint32_t object = store.voxels[hit.voxel].object;
+    slot.result = shade_hit(context, slot.setup, object, slot.lit, slot.colour[0], slot.colour[1]);
     slot.state = Slot::State::in_shading;
-    return shade_cycles(context, slot.lit & slot.setup.facing, true, costs);
+    return shade_cycles(context, slot.setup, object, slot.lit & slot.setup.facing, true, costs);
 }
 
 std::uint32_t ShadingUnit::direct(RayPacket& packet, const HitSetup& setup, const CellStore& store,
@@ -55,8 +55,10 @@ std::uint32_t ShadingUnit::direct(RayPacket& packet, const HitSetup& setup, cons
     const std::uint32_t voxel = packet.visit.hit.voxel;
     const std::uint64_t lit = context.settings.shadows == Shadows::per_hit ? 0 : store.lit[voxel];
     packet_ = &packet;
-    result_ = shade_hit(context, setup, store.voxels[voxel].object, lit, dvec3(0), dvec3(0));
-    return setup_cycles(context, setup, costs) + shade_cycles(context, lit & setup.facing, false, costs);
+    const std::uint32_t object = store.voxels[voxel].object;
+    result_ = shade_hit(context, setup, object, lit, dvec3(0), dvec3(0));
+    return setup_cycles(context, setup, costs) +
+           shade_cycles(context, setup, object, lit & setup.facing, false, costs);
 }
 
 void ShadingUnit::await(Slot& slot, Shadows shadows, std::uint64_t asked) {

@@ -35,7 +35,7 @@ constexpr Row rows[] = {
     {"refract", &CostTable::refract, {52, 48, 46, 12}, true},
     {"local_intensity", &CostTable::local_intensity, {24, 24, 21, 6}, true},
     {"per_lit_source", &CostTable::per_lit_source, {33, 33, 32, 14}, true},
-    {"mirror_again", &CostTable::mirror_again, {39, 39, 37, 0}, true},
+    {"mirrored", &CostTable::mirrored, {39, 39, 37, 0}, true},
     {"light_again", &CostTable::light_again, {47, 46, 44, 0}, true},
     {"reciprocal_newton", &CostTable::reciprocal_newton, {22, 22, 22, 4}, true},
     {"reciprocal_table", &CostTable::reciprocal_table, {16, 16, 16, 2}, true},

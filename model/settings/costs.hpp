@@ -32,10 +32,10 @@ struct OperatorSettings {
 /// hand that the table had before there were programs.
 enum class CostBasis { word, wide, two, estimate };
 
-/// All values are cycles; 0 stands for free, operators included. Override from the command line or the
-/// configuration: --cost NAME=CYCLES. What a microprogram exists for is its mean at words of 20 bits, less
-/// the operators that are added apart (docs/reference/microcode.md); the rest are estimates whatever the
-/// basis: power_rounded, backoff, and the stages before the array.
+/// All values are cycles. 0 makes leave_cube, mirrored and light_again free, their operators included.
+/// Override from the command line or the configuration: --cost NAME=CYCLES. What a microprogram exists for is
+/// its mean at words of 20 bits, less the operators that are added apart (docs/reference/microcode.md); the
+/// rest are estimates whatever the basis: power_rounded, backoff, and the stages before the array.
 struct CostTable {
     // Traversal unit: the incremental walk (Amanatides & Woo 1987) and the comparisons with voxels.
     std::uint32_t walk_step;         ///< next crossing, position on it, cube test
@@ -57,9 +57,8 @@ struct CostTable {
     std::uint32_t refract;          ///< plus a reciprocal, two roots and a ray's start
     std::uint32_t local_intensity;  ///< ambient and the final sums
     std::uint32_t per_lit_source;   ///< diffuse, R·L; plus its power
-    // What a slot does not keep until its answers are in; each plus a root.
-    std::uint32_t mirror_again;  ///< the mirrored direction, if a source is lit
-    std::uint32_t light_again;   ///< the direction of a lit source
+    std::uint32_t mirrored;         ///< direction for highlights where no reflected child has it; plus a root
+    std::uint32_t light_again;      ///< a lit source's direction, which a slot does not keep; plus a root
     // Operators, by method (--reciprocal, --root, --power).
     std::uint32_t reciprocal_newton;   ///< look-up, interpolation, two multiplications
     std::uint32_t reciprocal_table;    ///< look-up and interpolation

@@ -359,13 +359,17 @@ std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const 
     return cycles;
 }
 
-std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, bool again, const CostTable& costs) {
+std::uint32_t shade_cycles(const Context& context, const HitSetup& setup, std::uint32_t object,
+                           std::uint64_t lit, bool waited, const CostTable& costs) {
+    if (lit == 0) return costs.local_intensity;
     const OperatorSettings& operators = context.settings.numbers.operators;
-    const auto repeated = [&](std::uint32_t cycles) {
-        return again && cycles > 0 ? cycles + costs.root(operators) : 0;
+    const auto direction = [&](std::uint32_t cycles) {
+        return cycles > 0 ? cycles + costs.root(operators) : 0;
     };
-    const std::uint32_t each = costs.per_lit_source + costs.power(operators) + repeated(costs.light_again);
-    return costs.local_intensity + (lit != 0 ? repeated(costs.mirror_again) : 0) +
+    const bool mirrors = context.objects[object].specular > 0 && !setup.reflects;
+    const std::uint32_t each =
+        costs.per_lit_source + costs.power(operators) + (waited ? direction(costs.light_again) : 0);
+    return costs.local_intensity + (mirrors ? direction(costs.mirrored) : 0) +
            std::uint32_t(std::bitset<64>(lit).count()) * each;
 }
 

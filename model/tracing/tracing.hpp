@@ -128,8 +128,9 @@ dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t obj
 
 /// Cycles of the shading unit.
 std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs);
-/// `again`: answers were waited for, so directions are computed a second time.
-std::uint32_t shade_cycles(const Context& context, std::uint64_t lit, bool again, const CostTable& costs);
+/// `lit`: sources that face the surface and whose light arrives; `waited`: the hit was in a slot.
+std::uint32_t shade_cycles(const Context& context, const HitSetup& setup, std::uint32_t object,
+                           std::uint64_t lit, bool waited, const CostTable& costs);
 
 /// A cell's pixel after loading (--stage load): its nearest voxel at the cell's centre along z, without
 /// shadows.

@@ -6,7 +6,7 @@ using namespace scripted;
 
 namespace {
 
-// Sent in 100, there in 113, tested until 117 (with the default costs).
+// Sent in 100, there in 113, tested until 117 (with the estimated costs).
 constexpr Cycle tested = sent + ray_link + walk;
 
 void add_rays(std::vector<Scenario>& all) {

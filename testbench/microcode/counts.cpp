@@ -92,7 +92,7 @@ std::map<std::string, std::uint32_t> count_costs(const std::string& datapath, st
     // The same programs.
     counter.entries["compare_depth"] = counter.entries.at("compare_interval");
     counter.entries["light_again"] = counter.entries.at("source_view");
-    counter.entries["mirror_again"] = counter.entries.at("reflect");
+    counter.entries["mirrored"] = counter.entries.at("reflect");
     return counter.entries;
 }
 

@@ -38,11 +38,12 @@ class Setup:
         return cycles
 
     def lit_cycles(self, S, lit, waited):
-        """`waited`: the hit was in a slot, which keeps no directions."""
+        """`waited`: the hit was in a slot, which keeps no directions of sources."""
         lights = sum(k in lit for k in self.facing)
         cycles = S.cost("local_intensity") + lights * (S.cost("per_lit_source") + S.cost("power"))
-        for name, times in (("mirror_again", min(lights, 1)), ("light_again", lights)):
-            if waited and S.cost(name) > 0:
+        mirrored = min(lights, 1) if self.material.ks > 0 and not self.sends[0] else 0
+        for name, times in (("mirrored", mirrored), ("light_again", lights if waited else 0)):
+            if S.cost(name) > 0:
                 cycles += times * (S.cost(name) + S.cost("root"))
         return cycles
 
