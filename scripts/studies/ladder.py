@@ -33,14 +33,15 @@ def table(results, mode):
 
 
 def bits_table(results):
-    lines = ["| rung | bits per voxel | voxels | trace cycles |", "|---|---|---|---|"]
+    lines = ["| rung | bits per voxel | voxels | load cycles | trace cycles |", "|---|---|---|---|---|"]
     for rung in RUNGS:
         each = [results[s, rung, "fixed"] for s in SCENES]
         bits = [r["voxels"]["bits_each"] for r in each]
         voxels = [r["voxels"]["stored"] for r in each]
-        cycles = [r["cycles"]["trace"] for r in each]
+        load, trace = ([r["cycles"][phase] for r in each] for phase in ("load", "trace"))
         span = f"{min(bits):.0f}" if min(bits) == max(bits) else f"{min(bits):.0f} to {max(bits):.0f}"
-        lines.append(f"| `{rung}` | {span} | {min(voxels)} to {max(voxels)} | {min(cycles)} to {max(cycles)} |")
+        lines.append(f"| `{rung}` | {span} | {min(voxels)} to {max(voxels)} | {min(load)} to {max(load)} | "
+                     f"{min(trace)} to {max(trace)} |")
     return "\n".join(lines)
 
 
