@@ -1,6 +1,7 @@
 // Cycles without a free-running clock: a time wheel that wakes only the clients that have work.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -56,7 +57,7 @@ class Scheduler : public sc_core::sc_module {
                 spare_.pop_back();
             }
             due.push_back(&client);
-            ++waiting_;
+            busy_[cycle % slots / 64] |= std::uint64_t(1) << (cycle % 64);
         } else {
             far_[cycle].push_back(&client);
         }
@@ -135,14 +136,14 @@ class Scheduler : public sc_core::sc_module {
     sc_core::sc_event next_;
     sc_core::sc_event meeting_;
     std::vector<std::vector<Client*>> wheel_;
-    std::vector<std::vector<Client*>> spare_;  ///< lists of past cycles, for reuse; the latest first
+    std::array<std::uint64_t, slots / 64> busy_{};  ///< a bit for each list of the wheel that is not empty
+    std::vector<std::vector<Client*>> spare_;       ///< lists of past cycles, for reuse; the latest first
     std::vector<Client*> running_;
     std::map<Cycle, std::vector<Client*>> far_;  ///< entries beyond one turn of the wheel
     Cycle now_ = 0;
     Cycle kernel_now_ = 0;  ///< the kernel's cycle: it does not see cycles without work here
     Cycle scheduled_ = never;
     Cycle limit_ = never;
-    std::uint64_t waiting_ = 0;  ///< entries in the wheel
     std::uint64_t activations_ = 0;
     bool limit_reached_ = false;
     bool stopped_ = false;
