@@ -80,6 +80,8 @@ struct LoadingWords {
     }
     static Number step(Number low, Number size, int n, int bits) { return low + (size * n >> bits); }
     static int parts_down(Number offset, Number size, int bits) {
+        // Where loading words have no fraction, a cell may have no width: all of it.
+        if (size <= 0) return offset < 0 ? -(1 << bits) : 0;
         const Number parts = offset * (1 << bits);
         return int(parts >= 0 ? parts / size : -((-parts + size - 1) / size));
     }

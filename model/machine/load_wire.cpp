@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "model/numbers/bits.hpp"
 #include "model/numbers/field_widths.hpp"
@@ -94,6 +95,7 @@ void vector(Archive& a, const std::array<const char*, 3>& names, dvec3& v, const
 template <typename Archive>
 void fields_of_slopes(Archive& a, Plane& plane, int& drop, const Format& word, const char* format) {
     a.number("axis", drop, field::axis, "0 x, 1 y, 2 z: the plane's largest component");
+    if (drop > 2) throw std::length_error("load message: axis 3; expected 0 to 2");
     bool negative = plane.n[drop] < 0;
     a.number("sign", negative, 1, "1: this component is -1, not 1");
     plane.n[drop] = negative ? -1 : 1;
@@ -119,6 +121,8 @@ void fields_of_normal(Archive& a, NormalField& normal, const Format& word) {
 template <typename Archive>
 void fields_of_edges(Archive& a, std::array<EdgeFunction, 4>& edges, int& count, const Format& word) {
     a.number("edges", count, field::edges, "how many follow");
+    if (count > 4)
+        throw std::length_error("load message: " + std::to_string(count) + " edges; expected at most 4");
     for (int i = 0; i < count; ++i) {
         EdgeFunction& edge = edges[std::size_t(i)];
         a.word("edge a", edge.a, word, "loading: a · u + b · v + c >= 0 inside");

@@ -1,4 +1,5 @@
 // Programs of the rungs' own tests: a voxel's run, plane, mask, edges (tracing/intersect.cpp).
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -291,8 +292,11 @@ MicroProgram edge_program(const MicroSetting& setting) {
     const RegisterIndex slope_u = a.reg("a", f.word_bits, unit);
     const RegisterIndex slope_v = a.reg("b", f.word_bits, unit);
     const RegisterIndex c = a.reg("c", f.edge_offset.bits(), f.edge_offset.fraction_bits());
-    const RegisterIndex u = a.reg("u", f.depth.bits() + 1, f.depth.fraction_bits());
-    const RegisterIndex v = a.reg("v", f.depth.bits() + 1, f.depth.fraction_bits());
+    // Either may be a place in the cell or a depth.
+    const int place = std::max(f.unit.fraction_bits(), f.depth.fraction_bits());
+    const int place_bits = f.depth.bits() + 1 + place - f.depth.fraction_bits();
+    const RegisterIndex u = a.reg("u", place_bits, place);
+    const RegisterIndex v = a.reg("v", place_bits, place);
     const RegisterIndex inside = a.reg("inside", 2, 0);
     const RegisterIndex no = a.constant("0", 0, 2, 0);
     const RegisterIndex yes = a.constant("1", 1, 2, 0);

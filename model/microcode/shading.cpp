@@ -1,4 +1,5 @@
 // Programs of the shading unit.
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -72,8 +73,11 @@ MicroProgram normal_program(const MicroSetting& setting) {
     const Vector base = vector(a, "b", f.normal);
     const Vector du = vector(a, "u", f.normal);
     const Vector dv = vector(a, "v", f.normal);
-    const RegisterIndex u = a.reg("u", f.depth.bits() + 1, f.depth.fraction_bits());
-    const RegisterIndex v = a.reg("v", f.depth.bits() + 1, f.depth.fraction_bits());
+    // Either may be a place in the cell or a depth.
+    const int place = std::max(f.unit.fraction_bits(), f.depth.fraction_bits());
+    const int place_bits = f.depth.bits() + 1 + place - f.depth.fraction_bits();
+    const RegisterIndex u = a.reg("u", place_bits, place);
+    const RegisterIndex v = a.reg("v", place_bits, place);
     const Vector field = vector(a, "f", f.field);
     for (std::size_t i = 0; i < 3; ++i) a.sum(field[i], base[i], {{u, du[i]}, {v, dv[i]}});
     a.end();

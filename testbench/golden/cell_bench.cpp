@@ -211,7 +211,9 @@ std::string CellBench::objection(const Message& message, int index) const {
             if (ray.generation > setup_.picture.max_depth + is_shadow(ray.kind))
                 return "a ray of a generation beyond --max-depth";
             if (index != classes.ray(ray)) return "a ray of another direction than its buffer's class";
-            return "";
+            // Its answer comes here, if it is of this cell.
+            return objection_to_answer(
+                answer_to(ray, is_shadow(ray.kind) ? Answer::Kind::lit : Answer::Kind::intensity));
         }
         case Message::Kind::answer:
             if (!at_home(*message.answer)) return "an answer of a pixel or a home outside the array";

@@ -116,7 +116,10 @@ class Replay {
             const std::vector<std::string>& tokens = line.tokens;
             if (tokens[0] == "voxel") {
                 if (replay_.tests > 0) fail(line, "a voxel comes after a test");
-                named(line, [&] { read_voxel(words_, tokens, store_); });
+                named(line, [&] {
+                    read_voxel(words_, tokens, store_);
+                    check(store_.voxels.back());
+                });
             } else if (tokens.size() > 1 && tokens[1] == "test") {
                 if (tested_) fail(line, "the test before has no decision");
                 named(line, [&] { test(line); });
@@ -142,6 +145,17 @@ class Replay {
         } catch (const GoldenError& error) {
             fail(line, error.what());
         }
+    }
+
+    /// Refuses what no cell can have stored.
+    void check(const Voxel& voxel) const {
+        const std::size_t objects = context_.objects.size();
+        if (voxel.object >= objects)
+            throw GoldenError("field 'object': expected one of the head's " + std::to_string(objects));
+        if (voxel.far < voxel.near) throw GoldenError("field 'far': expected no less than 'near'");
+        const auto& w = voxel.window;
+        if (setup_.picture.hit == HitTest::mask && (w[1] <= w[0] || w[3] <= w[2]))
+            throw GoldenError("window: expected u_from below u_to and v_from below v_to");
     }
 
     /// CYCLE test FRESH LEAVES_FRONT BITS MESSAGE

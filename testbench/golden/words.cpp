@@ -77,10 +77,18 @@ std::string Words::word(const Format& format, double value) const {
 }
 
 double Words::read_word(const Format& format, const std::string& text) const {
-    if (is_hexadecimal(text)) return read_hexadecimal(text);
-    const auto integer = whole(text, "a word's integer");
-    if (std::abs(double(integer)) > most_integer) refuse(text, "a word's integer, below 2^53");
-    return double(integer) * format.step();
+    double value = 0;
+    if (is_hexadecimal(text)) {
+        value = read_hexadecimal(text);
+    } else {
+        const auto integer = whole(text, "a word's integer");
+        if (std::abs(double(integer)) > most_integer) refuse(text, "a word's integer, below 2^53");
+        value = double(integer) * format.step();
+    }
+    // Some room: what never travels may have more bits than its message.
+    if (!arithmetic_.exact() && !(std::abs(value) <= 16 * format.most()))
+        refuse(text, "a number that is not far outside its format");
+    return value;
 }
 
 std::string Words::floating(int bits, double value) const {
@@ -116,6 +124,8 @@ double Words::read_reciprocal(const std::string& text) const {
     return size;
 }
 
-double Words::read_reach(const std::string& text) const { return read_word(formats().reach, text); }
+double Words::read_reach(const std::string& text) const {
+    return text == "inf" ? read_hexadecimal(text) : read_word(formats().reach, text);
+}
 
 }  // namespace raycell

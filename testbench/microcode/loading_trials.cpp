@@ -493,4 +493,15 @@ TrialList loading_trials(const MicroSetting& s) {
     return all;
 }
 
+TrialList loading_variants(const MicroSetting& s) {
+    TrialList all;
+    for (const Normals normals : {Normals::voxel, Normals::linear}) {
+        all.push_back(std::make_unique<AdvanceTrial>(s, HitTest::depth, normals));
+        for (const HitTest rung :
+             {HitTest::depth, HitTest::interval, HitTest::plane, HitTest::mask, HitTest::edge})
+            all.push_back(std::make_unique<VoxelTrial>(s, rung, normals, MicroCost{}));
+    }
+    return all;
+}
+
 }  // namespace raycell

@@ -10,6 +10,8 @@ using TrialList = std::vector<std::unique_ptr<MicroTrial>>;
 TrialList traversal_trials(const MicroSetting& setting);  ///< the walk, the rungs' tests
 TrialList ray_trials(const MicroSetting& setting);        ///< a hit's setup, sources, new rays, answers
 TrialList loading_trials(const MicroSetting& setting);    ///< a span's way, voxels
+/// More of rung and normals, which cost as much as others.
+TrialList loading_variants(const MicroSetting& setting);
 TrialList shading_trials(const MicroSetting& setting);    ///< operators, directions, intensities
 
 /// A unit vector; some components are 0 or small.

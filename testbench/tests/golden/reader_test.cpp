@@ -1,5 +1,6 @@
 // Golden vectors as text: a round trip loses nothing, and errors name their line.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -157,6 +158,16 @@ TEST(GoldenText, WhatIsNoWordIsHexadecimalAndInfinityHasAName) {
     }
     EXPECT_EQ(words.word(format, std::numeric_limits<double>::infinity()), "inf");
     EXPECT_EQ(words.read_word(format, "-inf"), -std::numeric_limits<double>::infinity());
+}
+
+TEST(GoldenText, NumbersFarOutsideTheirFormatAreRefused) {
+    const Arithmetic arithmetic(words_of(20), {64, 64, 150, 1});
+    const Words words(arithmetic);
+    const Format& format = words.formats().loading;
+    for (const char* text : {"inf", "-inf", "0x1p1000", "9007199254740992", "-9007199254740992"})
+        EXPECT_THROW(words.read_word(format, text), GoldenError) << text;
+    EXPECT_EQ(words.read_word(format, "3"), 3 * format.step());
+    EXPECT_TRUE(std::isinf(words.read_reach("inf")));
 }
 
 TEST(GoldenText, MessagesComeBackWordForWord) {

@@ -28,7 +28,10 @@ Voxel drawn_voxel(const Arithmetic& arithmetic, property::Random& random, CellSt
     voxel.plane.n = drawn_vector(arithmetic, f.unit, random);
     voxel.plane.c = drawn_vector(arithmetic, f.offset, random).x;
     voxel.normal.base = drawn_vector(arithmetic, f.normal, random);
+    voxel.normal.du = drawn_vector(arithmetic, f.normal, random);
     voxel.normal.dv = drawn_vector(arithmetic, f.normal, random);
+    voxel.point = drawn_vector(arithmetic, f.unit, random);
+    voxel.point.z = arithmetic.hold(f.depth, random.uniform(0, 100));
     voxel.mask = random.engine()();
     voxel.window[2] = std::uint8_t(random.whole(0, 32));
     voxel.first_edge = std::uint32_t(store.edges.size());
@@ -42,6 +45,25 @@ Voxel drawn_voxel(const Arithmetic& arithmetic, property::Random& random, CellSt
         store.edges.push_back(edge);
     }
     return voxel;
+}
+
+void expect_equal(const Voxel& a, const Voxel& b) {
+    EXPECT_EQ(a.polygon, b.polygon);
+    EXPECT_EQ(a.object, b.object);
+    EXPECT_EQ(a.near_level, b.near_level);
+    EXPECT_EQ(a.far_level, b.far_level);
+    EXPECT_EQ(a.near, b.near);
+    EXPECT_EQ(a.far, b.far);
+    EXPECT_EQ(a.drop, b.drop);
+    EXPECT_EQ(a.plane.n, b.plane.n);
+    EXPECT_EQ(a.plane.c, b.plane.c);
+    EXPECT_EQ(a.normal.base, b.normal.base);
+    EXPECT_EQ(a.normal.du, b.normal.du);
+    EXPECT_EQ(a.normal.dv, b.normal.dv);
+    EXPECT_EQ(a.point, b.point);
+    EXPECT_EQ(a.mask, b.mask);
+    EXPECT_EQ(a.window, b.window);
+    EXPECT_EQ(a.edge_count, b.edge_count);
 }
 
 TEST(TraversalText, VoxelsComeBackWordForWord) {
@@ -65,6 +87,7 @@ TEST(TraversalText, VoxelsComeBackWordForWord) {
         std::istringstream lines(text);
         for (std::string line; std::getline(lines, line);) read_voxel(words, tokens_of(line), again);
         EXPECT_EQ(voxel_lines(words, again), text);
+        for (std::size_t i = 0; i < store.voxels.size(); ++i) expect_equal(again.voxels[i], store.voxels[i]);
         EXPECT_EQ(again.edges.size(), store.edges.size());
     }
 }
@@ -125,6 +148,24 @@ TEST(TraversalReplays, ADecisionThatIsRightPassesAndAnotherIsNamedByItsField) {
         ASSERT_EQ(replay.failures.size(), 1u);
         EXPECT_EQ(replay.failures[0].rfind("line 8: " + said[i], 0), 0u) << replay.failures[0];
     }
+}
+
+TEST(TraversalReplays, AVoxelThatNoCellCanHoldIsRefused) {
+    const auto voxel = [](const std::string& object, const std::string& far) {
+        return "begin\nvoxel 0 5 " + object + " 0 1 262144 " + far +
+               " 2 0 0 262144 0 0 0 65536 0 0 0 0 0 0 0 0 262144 0 0 0 0 0 0 0\n";
+    };
+    const auto said = [&](const std::string& object, const std::string& far) {
+        try {
+            replayed(with("begin\n", voxel(object, far)));
+        } catch (const GoldenError& error) {
+            return std::string(error.what());
+        }
+        return std::string("nothing");
+    };
+    EXPECT_NE(said("4000000000", "524288").find("field 'object': expected one of the head's 0"),
+              std::string::npos)
+        << said("4000000000", "524288");
 }
 
 TEST(TraversalReplays, LinesThatMakeNoSenseAreRefused) {

@@ -84,12 +84,19 @@ void expect_same_voxels(const Span& a, const Span& b, const Loaded& loaded, cons
     EXPECT_EQ(v.far, w.far);
     EXPECT_EQ(v.mask, w.mask);
     EXPECT_EQ(v.point, w.point);
-    EXPECT_EQ(v.edge_count, w.edge_count);
-    expect_equal(v.normal, w.normal);
-    if (loaded.settings.hit >= HitTest::plane) {
-        EXPECT_EQ(v.plane.n, w.plane.n);
-        EXPECT_EQ(v.plane.c, w.plane.c);
+    EXPECT_EQ(v.near_level, w.near_level);
+    EXPECT_EQ(v.far_level, w.far_level);
+    EXPECT_EQ(v.window, w.window);
+    EXPECT_EQ(v.drop, w.drop);
+    ASSERT_EQ(v.edge_count, w.edge_count);
+    for (std::uint32_t i = 0; i < v.edge_count; ++i) {
+        EXPECT_EQ(first.edges[i].a, second.edges[i].a);
+        EXPECT_EQ(first.edges[i].b, second.edges[i].b);
+        EXPECT_EQ(first.edges[i].c, second.edges[i].c);
     }
+    expect_equal(v.normal, w.normal);
+    EXPECT_EQ(v.plane.n, w.plane.n);
+    if (loaded.settings.hit >= HitTest::plane) EXPECT_EQ(v.plane.c, w.plane.c);
 }
 
 void expect_rows_packed(const Loaded& loaded, const Trapeze& trapeze, const CornerIntensities& shades,
@@ -132,6 +139,9 @@ TEST(LoadWire, SpansTrapezesAndSurfacesUnpackToWhatTheirReceiversUse) {
         EXPECT_EQ(back.id, polygon.id);
         EXPECT_EQ(back.vertices, polygon.vertices);
         EXPECT_EQ(back.slack, polygon.slack);
+        EXPECT_EQ(back.plane.n, polygon.plane.n);
+        EXPECT_EQ(back.plane.c, polygon.plane.c);
+        EXPECT_EQ(back.drop, polygon.drop);
         expect_equal(back.normal, polygon.normal);
         const Frame& frame = loaded.scene.frame;
         for (const Trapeze& trapeze : precompute(back, arithmetic, frame.width, frame.height)) {
@@ -148,6 +158,8 @@ TEST(LoadWire, SpansTrapezesAndSurfacesUnpackToWhatTheirReceiversUse) {
             EXPECT_EQ(received.edge_count, trapeze.edge_count);
             expect_equal(received.edges, trapeze.edges, trapeze.edge_count);
             EXPECT_EQ(received.rows.first, trapeze.rows.first);
+            EXPECT_EQ(received.rows.last, trapeze.rows.last);
+            EXPECT_EQ(received.columns.first, trapeze.columns.first);
             EXPECT_EQ(received.columns.last, trapeze.columns.last);
             if (loaded.settings.display == Display::gouraud) {
                 EXPECT_EQ(colours, shades);

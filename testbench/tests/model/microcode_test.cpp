@@ -5,6 +5,7 @@
 
 #include "../property.hpp"
 #include "testbench/microcode/counts.hpp"
+#include "testbench/microcode/trial_lists.hpp"
 
 namespace raycell {
 namespace {
@@ -51,6 +52,22 @@ TEST_P(MicrocodeOf, EveryProgramEqualsTheModelOnEveryDatapath) {
 
 INSTANTIATE_TEST_SUITE_P(Words, MicrocodeOf, testing::Values(8, 9, 12, 16, 20, 24, 27, 32),
                          [](const auto& words) { return "of_" + std::to_string(words.param) + "_bits"; });
+
+/// Depths finer than their last bit, loading words coarser than a unit word's last bit, a single cell.
+TEST(Microcode, EqualsTheModelInArraysOfOtherShapes) {
+    for (const ArrayExtent& extent : {ArrayExtent{3, 2, 60, 0.001}, ArrayExtent{1, 1, 1, 1.0 / 65536},
+                                      ArrayExtent{8, 8, 60000, 1}, ArrayExtent{2048, 16, 3000, 3}}) {
+        for (const int bits : {8, 12, 20, 32}) {
+            MicroSetting setting;
+            setting.numbers.word_bits = bits;
+            setting.extent = extent;
+            setting.datapath = datapaths(bits, widest_operand(setting.formats()))[0];
+            for (const auto make : {micro_trials, loading_variants}) {
+                for (const auto& trial : make(setting)) run_trial(*trial, inputs, 1);
+            }
+        }
+    }
+}
 
 TEST(Microcode, AProgramThatWasAlteredIsFoundOut) {
     MicroSetting setting;
