@@ -16,6 +16,35 @@ TEST(CellTb, PassesEveryScenario) {
     EXPECT_EQ(workshop.run_program(RAYCELL_CELL_TB, {"--quiet"}).out, "");
 }
 
+/// Without its bits a message may hold anything: what would break the cell is told.
+TEST(CellTb, AMessageThatNoCellCanBeSentIsRefused) {
+    const Workshop workshop;
+    ASSERT_EQ(workshop.run_program(RAYCELL_CELL_TB, {"blocked", "--write", "results/a.txt"}).exit_code, 0);
+    const Vectors vectors = read_vectors(workshop.result("a.txt").string());
+    const auto said = [&](const std::string& kind, std::size_t word, const std::string& other) {
+        Vectors altered = vectors;
+        for (std::size_t i = altered.first; i < altered.lines.size(); ++i) {
+            Words words = split(altered.lines[i]);
+            if (words.size() < word || words[1] != "in" || words[6] != kind) continue;
+            words[5] = "-";
+            words[word] = other;
+            altered.lines[i].clear();
+            for (const std::string& each : words)
+                altered.lines[i] += (altered.lines[i].empty() ? "" : " ") + each;
+        }
+        EXPECT_NE(altered.lines, vectors.lines);
+        const Finished finished =
+            replay(workshop, {workshop.write("b.txt", text_of(altered.lines)).string()});
+        EXPECT_EQ(finished.signal, 0);
+        EXPECT_GT(finished.exit_code, 0);
+        return finished.err;
+    };
+    const std::string own = said("shadow_ray", 18, "1");  // home_x: of this cell, which has sent none
+    EXPECT_TRUE(contains(own, "a slot that was never used")) << own;
+    const std::string infinite = said("span", 11, "inf");
+    EXPECT_TRUE(contains(infinite, "not far outside its format")) << infinite;
+}
+
 TEST(CellTb, EveryScenarioAsAFileReplaysAndAnyAlteredWordOfWhatIsExpectedIsFound) {
     const Workshop workshop;
     ASSERT_EQ(workshop.run_program(RAYCELL_CELL_TB, {"--write", "results/"}).exit_code, 0);
