@@ -100,7 +100,11 @@ WireBits Environment::exchange(LoadItem& item) const {
             break;
         case LoadItem::Kind::surface:
             packed = load_wire->pack(static_cast<const Surface&>(item.trapeze));
-            replace(static_cast<Surface&>(item.trapeze), load_wire->unpack_surface(packed));
+            {
+                Trapeze alone;  // no rows, columns or edges come along
+                static_cast<Surface&>(alone) = load_wire->unpack_surface(packed);
+                replace(item.trapeze, alone);
+            }
             break;
         case LoadItem::Kind::trapeze:
             packed = load_wire->pack(item.trapeze, item.intensities);

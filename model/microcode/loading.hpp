@@ -81,6 +81,8 @@ class LoadingWriter {
     Corner corner(const std::string& name);
     void copy(const Corner& to, const Corner& from);
     void value(RegisterIndex target, const Line& line, const Corner& at);
+    /// The line becomes the span's edge, or bound, of this number.
+    void fetch_line(RegisterIndex number);
     void side_of(const std::string& name, const Corner& from, const Corner& to, RegisterIndex from_at,
                  RegisterIndex to_at);
     void add_cut_point();
@@ -94,6 +96,8 @@ class LoadingWriter {
     MaskAxis mask_axis(const std::string& axis, RegisterIndex from, RegisterIndex to, RegisterIndex low,
                        RegisterIndex high);
     void window(const std::string& axis, const MaskAxis& m);
+    void window_end(const std::string& name, const MaskAxis& m, RegisterIndex off, RegisterIndex end,
+                    bool upwards);
     void borders(const std::string& axis, const MaskAxis& m);
     void touched(const std::string& axis, const MaskAxis& m);
     void narrow(const MaskAxis& u, const MaskAxis& v);

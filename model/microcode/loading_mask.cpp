@@ -18,35 +18,36 @@ void LoadingWriter::take_bounds() {
     high_ = corner("high");
 }
 
+/// off / size in 32nds, down or up, from 0 on and up to the last one that an end may have.
+void LoadingWriter::window_end(const std::string& name, const MaskAxis& m, RegisterIndex off,
+                               RegisterIndex end, bool upwards) {
+    const int steps = 1 << window_bits;
+    const RegisterIndex last = a_.constant(name + " at most", upwards ? steps : steps - 1, 7, 0);
+    a_.move(end, zero_);
+    a_.jump_negative(off, name + " known");
+    a_.move(end, last);
+    a_.jump_less(off, m.size, name + " inside");
+    a_.jump(name + " known");
+    a_.label(name + " inside");
+    a_.divide(name, end, off, m.size, window_bits, one_);
+    if (upwards) {
+        a_.jump_zero(off, name + " known");  // the division leaves its rest there
+        a_.add(end, end, one_);
+    }
+    a_.label(name + " known");
+}
+
 /// One axis of the window: the part's bounds, rounded outwards to 32nds of the run's rectangle.
 void LoadingWriter::window(const std::string& axis, const MaskAxis& m) {
     const RegisterIndex off = a_.reg(axis + " off", v_bits_ + 2, f_);
     const RegisterIndex least = number_of(axis + " least", 7);
-    const RegisterIndex last_step = a_.constant(axis + " last step", (1 << window_bits) - 1, 7, 0);
-    const RegisterIndex steps = a_.constant(axis + " steps", 1 << window_bits, 7, 0);
     a_.subtract(m.size, m.to, m.from);
     a_.subtract(off, m.low, hair_);
     a_.subtract(off, off, m.from);
-    a_.move(m.first, zero_);
-    a_.jump_negative(off, axis + " from known");
-    a_.move(m.first, last_step);
-    a_.jump_less(off, m.size, axis + " from inside");
-    a_.jump(axis + " from known");
-    a_.label(axis + " from inside");
-    a_.divide(axis + " from", m.first, off, m.size, window_bits, one_);
-    a_.label(axis + " from known");
+    window_end(axis + " from", m, off, m.first, false);
     a_.add(off, m.high, hair_);
     a_.subtract(off, off, m.from);
-    a_.move(m.last, zero_);
-    a_.jump_negative(off, axis + " to known");
-    a_.move(m.last, steps);
-    a_.jump_less(off, m.size, axis + " to inside");
-    a_.jump(axis + " to known");
-    a_.label(axis + " to inside");
-    a_.divide(axis + " to", m.last, off, m.size, window_bits, one_);
-    a_.jump_zero(off, axis + " to known");
-    a_.add(m.last, m.last, one_);
-    a_.label(axis + " to known");
+    window_end(axis + " to", m, off, m.last, true);
     a_.add(least, m.first, one_);
     a_.most(m.last, m.last, least);
 }
@@ -177,9 +178,7 @@ void LoadingWriter::mask() {
     a_.jump("edges of mask left");
     a_.label("next edge of mask");
     a_.fetch(edge, crossing_edges_, which);
-    a_.fetch(line_.a, edge_a_, edge);
-    a_.fetch(line_.b, edge_b_, edge);
-    a_.fetch(line_.c, edge_c_, edge);
+    fetch_line(edge);
     narrow(u, v);
     a_.add(which, which, one_);
     a_.label("edges of mask left");

@@ -49,6 +49,12 @@ void LoadingWriter::value(RegisterIndex target, const Line& line, const Corner& 
     a_.sum_down(target, line.c, {{line.a, at.u}, {line.b, at.v}});
 }
 
+void LoadingWriter::fetch_line(RegisterIndex number) {
+    a_.fetch(line_.a, edge_a_, number);
+    a_.fetch(line_.b, edge_b_, number);
+    a_.fetch(line_.c, edge_c_, number);
+}
+
 void LoadingWriter::take_span() {
     drop_z_ = number("drop z");
     drop_x_ = number("drop x");
@@ -252,9 +258,7 @@ void LoadingWriter::part() {
     a_.move(line, zero_);
     a_.jump("lines left");
     a_.label("next line");
-    a_.fetch(line_.a, edge_a_, line);
-    a_.fetch(line_.b, edge_b_, line);
-    a_.fetch(line_.c, edge_c_, line);
+    fetch_line(line);
     a_.add(line_.c, line_.c, room_);
     cut();
     a_.jump_zero(count_, "none");

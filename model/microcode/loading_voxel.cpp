@@ -114,9 +114,7 @@ void LoadingWriter::cross(HitTest rung) {
     a_.move(crossings_, zero_);
     a_.jump("edges left");
     a_.label("next edge");
-    a_.fetch(line_.a, edge_a_, index);
-    a_.fetch(line_.b, edge_b_, index);
-    a_.fetch(line_.c, edge_c_, index);
+    fetch_line(index);
     for (const bool v : {false, true}) {
         const std::string axis = v ? " v" : " u";
         const RegisterIndex from = v ? from_v_ : no_length_;

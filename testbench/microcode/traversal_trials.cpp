@@ -12,6 +12,7 @@ namespace {
 
 double depth_of(const MicroSetting& s) { return s.formats().depth.hold(s.extent.depth); }
 
+/// A ray that starts anywhere in a cell, at a depth from 0 to `depth`.
 Ray any_ray(MicroRandom& random, double depth, const Arithmetic& arithmetic) {
     const Formats& f = arithmetic.formats();
     Ray ray;
