@@ -50,7 +50,7 @@ void MachineParts::bind_stages() {
     const ArrayShare& share = environment.share;
     if (share.contains(0)) {
         to_distribution.connect_sink(distribution.row(0));
-        distribution.row(0).in.bind(to_distribution);
+        distribution.row(0).in = &to_distribution;
     }
 }
 
@@ -62,7 +62,7 @@ void MachineParts::bind_rows() {
         link.set_name("distribution.row_" + std::to_string(y) + ".east");
         environment.stall(link, link.name());
         link.connect_source(distribution.row(y));
-        distribution.row(y).east.bind(link);
+        distribution.row(y).east = &link;
         array.join_row(y, link);
     }
 }

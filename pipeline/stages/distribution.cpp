@@ -54,11 +54,11 @@ Cycle RowDistributor::step(Cycle now) {
     if (now < ready_) return ready_;
     if (to_row_ && east->can_send(0, retry)) {
         ++env.meters.counters.loads_sent;
-        send_load(*east.operator->(), *to_row_, env);
+        send_load(*east, *to_row_, env);
         to_row_ = nullptr;
     }
     if (goes_down_ && down->can_send(0, retry)) {
-        send_load(*down.operator->(), *item_, env);
+        send_load(*down, *item_, env);
         goes_down_ = false;
         passed_on_ = true;
     }
@@ -71,10 +71,11 @@ Cycle RowDistributor::step(Cycle now) {
 
 Distribution::Distribution(sc_core::sc_module_name name, Environment& environment)
     : sc_module(name), share_(environment.share) {
-    for (const int y : share_.rows()) {
-        const std::string row_name = "row_" + std::to_string(y);
-        rows_.push_back(std::make_unique<RowDistributor>(row_name.c_str(), environment, y));
-    }
+    SC_METHOD(run);
+    sensitive << wake_;
+    dont_initialize();
+    for (const int y : share_.rows())
+        rows_.push_back(std::make_unique<RowDistributor>(environment, y, active_, wake_));
     for (const Band& band : share_.bands()) {
         for (int y = band.first; y < band.end; ++y) {
             if (y > 0) join_above(environment, y, y == band.first ? band.above : nullptr);
@@ -83,20 +84,25 @@ Distribution::Distribution(sc_core::sc_module_name name, Environment& environmen
     }
 }
 
+void Distribution::run() {
+    for (RowDistributor* row : active_) row->run();
+    active_.clear();
+}
+
 /// Makes the link into the distributor of row y; a half link if the row above is another rank's.
 void Distribution::join_above(Environment& environment, int y, SplitLinks* above) {
     links_.push_back(std::make_unique<Link>(environment.scheduler, 1, environment.machine.buffer_depth));
     Link& link = *links_.back();
     link.set_name(name_down(y - 1));
     link.connect_sink(row(y));
-    row(y).in.bind(link);
+    row(y).in = &link;
     if (above) {
         above->add_sink(link);
         return;
     }
     environment.stall(link, link.name());
     link.connect_source(row(y - 1));
-    row(y - 1).down.bind(link);
+    row(y - 1).down = &link;
 }
 
 /// Makes the half link from the distributor of row y to another rank's.
@@ -105,7 +111,7 @@ void Distribution::join_below(Environment& environment, int y, SplitLinks& below
     link.set_name(name_down(y));
     environment.stall(link, link.name());
     link.connect_source(row(y));
-    row(y).down.bind(link);
+    row(y).down = &link;
 }
 
 StageStatistics Distribution::statistics() const {

@@ -10,14 +10,21 @@
 
 namespace raycell {
 
-/// The distributor of one row.
-class RowDistributor : public Stage {
+/// The distributor of one row. Those of all rows share the process of Distribution: one process for each would
+/// cost more than what it does.
+class RowDistributor : public StageWork {
   public:
-    RowDistributor(sc_core::sc_module_name name, Environment& environment, int row)
-        : Stage(name, environment), row_(row) {}
-    sc_core::sc_port<LinkIn> in;     ///< from the row above; in row 0 from precomputation
-    sc_core::sc_port<LinkOut> east;  ///< into the row's first cell
-    sc_core::sc_port<LinkOut, 1, sc_core::SC_ZERO_OR_MORE_BOUND> down;  ///< to the row below
+    /// `active` has the distributors that must run in this cycle, `wake` runs them.
+    RowDistributor(Environment& environment, int row, std::vector<RowDistributor*>& active,
+                   sc_core::sc_event& wake)
+        : StageWork(environment), row_(row), active_(active), wake_(wake) {}
+    Link* in = nullptr;    ///< from the row above; in row 0 from precomputation
+    Link* east = nullptr;  ///< into the row's first cell
+    Link* down = nullptr;  ///< to the row below; null in the last row
+    void activate() override {
+        if (active_.empty()) wake_.notify();
+        active_.push_back(this);
+    }
 
     /// Number of load messages made for the row and not yet injected.
     std::size_t holds() const { return to_row_ ? 1 : 0; }
@@ -33,6 +40,8 @@ class RowDistributor : public Stage {
     void take(LoadItem& item, Cycle now);
 
     int row_;
+    std::vector<RowDistributor*>& active_;
+    sc_core::sc_event& wake_;
     Surface surface_;             ///< of the trapezes that follow
     LoadItem* item_ = nullptr;    ///< the message at work, at the head of the input
     LoadItem* to_row_ = nullptr;  ///< made for the row, still to be injected
@@ -45,6 +54,7 @@ class RowDistributor : public Stage {
 /// those of this rank's rows.
 class Distribution : public sc_core::sc_module {
   public:
+    SC_HAS_PROCESS(Distribution);
     Distribution(sc_core::sc_module_name name, Environment& environment);
     RowDistributor& row(int y) { return *rows_[std::size_t(share_.place(y))]; }
     const RowDistributor& row(int y) const { return *rows_[std::size_t(share_.place(y))]; }
@@ -55,11 +65,14 @@ class Distribution : public sc_core::sc_module {
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
 
   private:
+    void run();
     void join_above(Environment& environment, int y, SplitLinks* above);
     void join_below(Environment& environment, int y, SplitLinks& below);
 
     const ArrayShare& share_;
     std::vector<std::unique_ptr<RowDistributor>> rows_;
+    std::vector<RowDistributor*> active_;  ///< in this cycle
+    sc_core::sc_event wake_;
     std::vector<std::unique_ptr<Link>> links_;
 };
 

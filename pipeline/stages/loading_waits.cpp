@@ -18,7 +18,7 @@ WaitGraph::Node place(Kind kind, int y, std::string what) {
     return node;
 }
 
-void add_stage(WaitMap& map, const Stage& stage, int y, const char* what, const LoadItem& item, Cycle since) {
+void add_stage(WaitMap& map, const StageWork& stage, int y, const char* what, const LoadItem& item, Cycle since) {
     WaitGraph::Node node = place(Kind::stage, y, what);
     node.holds = describe(item);
     node.since = since;
@@ -32,7 +32,7 @@ Wants wants_out(const WaitMap& map, Cycle now, Cycle ready, const Link& out, con
 
 /// Sets what the message at the head of a link waits for: the stage `taker`, and the message that it may
 /// hold.
-void set_input(WaitMap& map, const Link& in, const Stage& taker) {
+void set_input(WaitMap& map, const Link& in, const StageWork& taker) {
     const auto node = map.find(&in, Kind::buffer, 0);
     if (!node) return;
     if (in.front(0).kind == Message::Kind::none) {
@@ -52,13 +52,13 @@ const Link& link_of(const sc_core::sc_port_b<LinkOut>& out) {
 void RowDistributor::add_places(WaitMap& map, const Link& input) const {
     add_buffer(map, input, 0, place(Kind::buffer, row_, "input of the row's distributor"));
     if (to_row_) add_stage(map, *this, row_, "the row's distributor", *to_row_, ready_);
-    add_buffer(map, link_of(east), 0, place(Kind::buffer, row_, "input of the row's first cell"));
+    add_buffer(map, *east, 0, place(Kind::buffer, row_, "input of the row's first cell"));
 }
 
 void RowDistributor::add_waits(WaitMap& map, const Link& input) const {
     const Cycle now = environment().scheduler.now();
-    const auto stage = map.find(this, Kind::stage, 0);
-    if (stage) map.set(*stage, wants_out(map, now, ready_, link_of(east), "the row's first cell"));
+    const auto stage = map.find(static_cast<const StageWork*>(this), Kind::stage, 0);
+    if (stage) map.set(*stage, wants_out(map, now, ready_, *east, "the row's first cell"));
     const auto node = map.find(&input, Kind::buffer, 0);
     if (!node) return;
     if (!item_ || now < ready_) {
@@ -72,7 +72,7 @@ void RowDistributor::add_waits(WaitMap& map, const Link& input) const {
         wants.text = "its span to leave";
     }
     if (goes_down_) {
-        const Wants below = wants_buffer(map, link_of(down), 0, "the row below");
+        const Wants below = wants_buffer(map, *down, 0, "the row below");
         wants.on.insert(wants.on.end(), below.on.begin(), below.on.end());
         wants.text += (wants.text.empty() ? "" : ", ") + below.text;
     }
@@ -86,7 +86,7 @@ void Geometry::add_places(WaitMap& map) const {
 
 void Geometry::add_waits(WaitMap& map) const {
     const Cycle now = environment().scheduler.now();
-    if (const auto node = map.find(this, Kind::stage, 0))
+    if (const auto node = map.find(static_cast<const StageWork*>(this), Kind::stage, 0))
         map.set(*node, wants_out(map, now, ready_, link_of(out), "precomputation"));
 }
 
@@ -98,7 +98,7 @@ void Precomputation::add_places(WaitMap& map, const Link& input) const {
 void Precomputation::add_waits(WaitMap& map, const Link& input) const {
     set_input(map, input, *this);
     const Cycle now = environment().scheduler.now();
-    if (const auto node = map.find(this, Kind::stage, 0))
+    if (const auto node = map.find(static_cast<const StageWork*>(this), Kind::stage, 0))
         map.set(*node, wants_out(map, now, ready_, link_of(out), "the first row's distributor"));
 }
 

@@ -1,5 +1,5 @@
-// The common base of the stages before the array and of the exterior: a process woken by the scheduler, a
-// throughput, a utilisation.
+// The common base of the stages before the array and of the exterior: woken by the scheduler, with a
+// throughput and a utilisation.
 #pragma once
 
 #include <systemc>
@@ -15,16 +15,10 @@ struct StageStatistics {
     std::uint64_t busy_cycles = 0;  ///< at work, without waits for room downstream
 };
 
-class Stage : public sc_core::sc_module, public Client {
+/// What every stage has, whichever process runs it.
+class StageWork : public Client {
   public:
-    SC_HAS_PROCESS(Stage);
-    Stage(sc_core::sc_module_name name, Environment& environment)
-        : sc_module(name), environment_(environment) {
-        SC_METHOD(run);
-        sensitive << wake_;
-        dont_initialize();
-    }
-    void activate() override { wake_.notify(); }
+    explicit StageWork(Environment& environment) : environment_(environment) {}
     /// Statistics up to now; an operation that is still going on counts with the cycles that are over.
     StageStatistics statistics() const {
         StageStatistics so_far = statistics_;
@@ -32,9 +26,13 @@ class Stage : public sc_core::sc_module, public Client {
         if (busy_until_ > now) so_far.busy_cycles -= busy_until_ - now;
         return so_far;
     }
-
     /// Restores the statistics of a saved stage, with which this one goes on.
     void restore(const StageStatistics& statistics) { statistics_ = statistics; }
+    /// Runs the cycle of the scheduler, and asks to be woken again when that is needed.
+    void run() {
+        const Cycle next = step(environment_.scheduler.now());
+        if (next != never) environment_.scheduler.wake(*this, next);
+    }
 
   protected:
     /// Runs one cycle. Returns the next cycle in which the stage must run without being woken; `never` if
@@ -50,12 +48,23 @@ class Stage : public sc_core::sc_module, public Client {
     StageStatistics statistics_;
 
   private:
-    void run() {
-        const Cycle next = step(environment_.scheduler.now());
-        if (next != never) environment_.scheduler.wake(*this, next);
-    }
     Environment& environment_;
     Cycle busy_until_ = 0;
+};
+
+/// A stage that is a module with a process of its own.
+class Stage : public sc_core::sc_module, public StageWork {
+  public:
+    SC_HAS_PROCESS(Stage);
+    Stage(sc_core::sc_module_name name, Environment& environment) : sc_module(name), StageWork(environment) {
+        SC_METHOD(run);
+        sensitive << wake_;
+        dont_initialize();
+    }
+    void activate() override { wake_.notify(); }
+
+  private:
+    void run() { StageWork::run(); }
     sc_core::sc_event wake_;
 };
 
