@@ -64,9 +64,12 @@ class alignas(64) Cell final : public Client {
     struct Loading {
         std::uint64_t hash = 0;  ///< of its schedule
         std::uint64_t hops = 0;
+        std::uint64_t cycles = 0;  ///< of making voxels
     };
-    Loading loading() const { return {meter_.hash(), meter_.statistics().load_hops}; }
-    void restore(const Loading& loading) { meter_.restore(loading.hash, loading.hops); }
+    Loading loading() const {
+        return {meter_.hash(), meter_.statistics().load_hops, meter_.statistics().loading_cycles};
+    }
+    void restore(const Loading& loading) { meter_.restore(loading.hash, loading.hops, loading.cycles); }
     /// Counters of the cell so far; waits and operations still going on count up to cycle `now`.
     CellStatistics statistics(Cycle now) const;
     /// Cycles that the units' current operations still need; statistics counted them in full when the

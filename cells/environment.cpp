@@ -5,6 +5,7 @@
 
 #include "cells/channels/link.hpp"
 #include "model/machine/stall.hpp"
+#include "model/machine/storage_bits.hpp"
 
 namespace raycell {
 
@@ -17,6 +18,8 @@ CellConfig::CellConfig(const CellScene& scene, const PictureSettings& picture_se
       cycles{cycles_for(bits.ray), cycles_for(bits.shadow_ray), cycles_for(bits.intensity),
              cycles_for(bits.verdict)},
       classes(buffer_classes(machine.networks)),
+      voxel_bits(raycell::voxel_bits(settings, context.arithmetic.formats(), scene.sources.size())),
+      kept_span_bits(raycell::kept_span_bits(bits)),
       answer_routing(classes.count > 1 ? int(machine.costs.route_return) : 0) {
     if (!machine.wire_check) return;
     wire.emplace(settings, machine, context.arithmetic.formats());

@@ -1,6 +1,7 @@
 // What all cells of an array share: settings, costs, pools, meters.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "cells/array_share.hpp"
@@ -41,6 +42,8 @@ struct CellConfig {
     MessageBits bits;
     LinkCycles cycles;  ///< for `bits`; computed once, to save a division per hop
     BufferClasses classes;
+    VoxelBits voxel_bits;
+    int kept_span_bits;  ///< of a span that waits for its voxel
     /// Cycles from an answer's arrival until its cell must look at it; 0 where rays and answers share a
     /// buffer.
     int answer_routing;
@@ -51,11 +54,15 @@ struct CellConfig {
     CellConfig(const CellScene& scene, const PictureSettings& picture_settings,
                const MachineSettings& machine_settings, const SyntheticTraffic* traffic);
 
+    /// Lanes of the feed: not more than there are rows.
+    int feed_lanes() const { return std::min(machine.feed_lanes, height()); }
     int width() const { return context.scene.frame.width; }
     int height() const { return context.scene.frame.height; }
     const CostTable& costs() const { return machine.costs; }
     int cycles_for(int message_bits_) const { return link_cycles(message_bits_, machine.link_bits); }
     int load_bits(const LoadItem& item) const;
+    /// Cycles of a load message on a link of the feed: from geometry to the rows' distributors.
+    int feed_cycles(int message_bits_) const { return link_cycles(message_bits_, machine.feed_bits); }
     /// Gives a link its random stalls, if the settings ask for any; its name tells links apart.
     void stall(Link& link, const std::string& name) const;
 };

@@ -40,6 +40,8 @@ void send_answer(Answer* answer, Out& out, Environment& environment, CellMeter& 
 
 /// Sends a load message over `out`; it must be able to start there now.
 void send_load(LinkOut& out, LoadItem& item, Environment& environment);
+/// The same over a link of the feed, before the rows.
+void send_feed(LinkOut& out, LoadItem& item, Environment& environment);
 
 /// The answer in which a tested ray ends, if it needs one.
 Answer response_of(const RayPacket& packet, const Context& context);

@@ -60,17 +60,24 @@ void visit_loading(MachineParts& parts, std::vector<std::uint64_t>& numbers, boo
     counts.visit(now);
     parts.scheduler.set_now(now);
     counts.visit(result.load_cycles);
-    StageStatistics stages[] = {parts.geometry.statistics(), parts.precomputation.statistics(),
-                                parts.distribution.statistics()};
+    Binding& binding = result.load_binding;
+    counts.visit(binding.unit);
+    counts.visit(binding.x);
+    counts.visit(binding.y);
+    counts.visit(binding.side);
+    counts.visit(binding.cycles);
+    StageStatistics stages[] = {parts.geometry(), parts.precomputation(), parts.distribution.statistics()};
     for (StageStatistics& stage : stages) visit_stage(counts, stage);
     if (taking) {
-        parts.geometry.restore(stages[0]);
-        parts.precomputation.restore(stages[1]);
-        parts.distribution.row(0).restore(stages[2]);  // only the sum over rows matters
+        // Only the sums over lanes and rows matter. There is a lane: ranks, which may have none, load no
+        // arrays.
+        parts.lanes.front()->geometry.restore(stages[0]);
+        parts.lanes.front()->precomputation.restore(stages[1]);
+        parts.distribution.row(0).restore(stages[2]);
     }
     Counters& c = parts.environment.meters.counters;
-    for (std::uint64_t* count :
-         {&c.load_hops, &c.loads_sent, &c.loads_delivered, &c.cells_loaded, &c.last_progress})
+    for (std::uint64_t* count : {&c.load_hops, &c.loads_sent, &c.loads_delivered, &c.cells_loaded,
+                                 &c.most_kept, &c.most_load_bits, &c.last_progress})
         counts.visit(*count);
     counts.visit(result.buffers.front().peak);
     counts.visit_real(result.buffers.front().mean);
@@ -78,6 +85,7 @@ void visit_loading(MachineParts& parts, std::vector<std::uint64_t>& numbers, boo
         Cell::Loading loading = cell.loading();
         counts.visit(loading.hash);
         counts.visit(loading.hops);
+        counts.visit(loading.cycles);
         cell.restore(loading);
     }
     counts.finish();

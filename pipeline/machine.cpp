@@ -8,6 +8,11 @@
 #include "pipeline/results.hpp"
 
 namespace raycell {
+namespace {
+
+void take_larger(Binding& most, const Binding& other) { most.consider(other); }
+
+}  // namespace
 
 Machine::Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
                  const MachineSettings& machine, const ExteriorTracer* tracer,
@@ -51,6 +56,8 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
         result.activity = activity_.activity();
         joined_.join(result.activity);
     }
+    if (settings.stage == RunStage::trace)
+        result.trace_binding = joined_.of_all(binding_of_trace(parts_), take_larger);
     const Results results(parts_, joined_, totals_);
     result.in_flight = results.in_flight();
     results.check_conservation(result.in_flight, going());
@@ -75,6 +82,7 @@ void Machine::load(RunResult& result) {
     joined_.join(result.load_activity);
     // Load messages use the buffers of class 0, at a time when no others do; their figures are kept apart.
     result.buffers.push_back(Results(parts_, joined_, totals_).buffer_use("load", 0, result.load_cycles));
+    result.load_binding = joined_.of_all(binding_of_load(parts_), take_larger);
     if (on_loaded_ && result.verdict == Verdict::completed) hand_over_loaded(parts_, result, on_loaded_);
 }
 
@@ -99,7 +107,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
     slow_ray_ = parts_.slow_ray();
     if (phase == Phase::precast) count_precast_rays();
     if (phase == Phase::load) {
-        if (env.share.contains(0)) parts_.geometry.start();
+        for (const auto& lane : parts_.lanes) lane->geometry.start();
     } else {
         if (env.meters.observer) env.meters.observer->phase_begins(phase, env.phase_start + 1);
         parts_.array.begin_phase();
@@ -217,6 +225,13 @@ RankProgress Machine::progress() const {
     return mine;
 }
 
+/// Polygons that every lane here has done with.
+std::size_t Machine::polygons_taken() const {
+    std::size_t least = parts_.environment.context.scene.polygons.size();
+    for (const auto& lane : parts_.lanes) least = std::min(least, lane->geometry.polygons_taken());
+    return least;
+}
+
 /// The share of the phase's work that is done. Loading is measured by polygons: loaded cells are counted by
 /// the end-of-scene marks, which come last.
 double Machine::phase_share() const {
@@ -226,7 +241,7 @@ double Machine::phase_share() const {
     };
     switch (parts_.environment.phase) {
         case Phase::load:
-            return share(parts_.geometry.polygons_taken(), parts_.environment.context.scene.polygons.size());
+            return share(polygons_taken(), parts_.environment.context.scene.polygons.size());
         case Phase::precast:
             return share(c.rays_answered + c.rays_silent, precast_rays_);
         case Phase::trace:

@@ -32,7 +32,7 @@ class Machine : public sc_core::sc_module {
   public:
     /// `tracer` may be null if no ray goes to the exterior. With `traffic` hits are drawn at random
     /// (model/tracing/traffic.hpp). With `ranks` this is one rank's part of a machine that several processes
-    /// simulate; only rank 0 needs the scene's polygons and the tracer. All arguments must outlive the
+    /// simulate; only rank 0 needs the tracer. All arguments must outlive the
     /// machine.
     Machine(sc_core::sc_module_name name, const CellScene& scene, const PictureSettings& settings,
             const MachineSettings& machine, const ExteriorTracer* tracer,
@@ -64,12 +64,8 @@ class Machine : public sc_core::sc_module {
     Environment& environment() { return parts_.environment; }
 
     // The loading pipeline before the array, for observers.
-    static constexpr int stage_link_depth = MachineParts::stage_link_depth;
-    const Geometry& geometry() const { return parts_.geometry; }
-    const Precomputation& precomputation() const { return parts_.precomputation; }
+    const std::vector<std::unique_ptr<FeedLane>>& lanes() const { return parts_.lanes; }
     const Distribution& distribution() const { return parts_.distribution; }
-    Link& polygon_link() { return parts_.to_precomputation; }
-    Link& trapeze_link() { return parts_.to_distribution; }
     const std::vector<std::unique_ptr<Link>>& row_links() const { return parts_.row_links; }
 
     /// At most `most` cells (x, y) that hold messages or rays, those with the oldest messages first.
@@ -99,6 +95,7 @@ class Machine : public sc_core::sc_module {
     bool nothing_comes_home(Cycle idle);
     RankProgress progress() const;
     void tell_progress(Cycle now) const;
+    std::size_t polygons_taken() const;
     double phase_share() const;
 
     MachineParts parts_;

@@ -13,13 +13,9 @@ MachineParts::MachineParts(const CellScene& scene, const PictureSettings& settin
       scheduler("scheduler", sc_core::sc_time(1e3 / machine.clock_mhz, sc_core::SC_NS)),
       picture(scene.frame.width, scene.frame.height),
       environment(scene, settings, machine, scheduler, picture, traffic, ranks ? &ranks->share() : nullptr),
-      geometry("geometry", environment),
-      precomputation("precomputation", environment),
       distribution("distribution", environment),
-      array("array", environment, granularity),
-      to_precomputation(scheduler, 1, stage_link_depth),
-      to_distribution(scheduler, 1, stage_link_depth) {
-    bind_stages();
+      array("array", environment, granularity) {
+    make_lanes();
     bind_rows();
     const bool anything_beyond =
         std::any_of(scene.beyond.begin(), scene.beyond.end(), [](bool b) { return b; });
@@ -35,22 +31,15 @@ MachineParts::MachineParts(const CellScene& scene, const PictureSettings& settin
     }
 }
 
-void MachineParts::bind_stages() {
-    to_precomputation.set_name("geometry.out");
-    environment.stall(to_precomputation, to_precomputation.name());
-    to_precomputation.connect_source(geometry);
-    to_precomputation.connect_sink(precomputation);
-    geometry.out.bind(to_precomputation);
-    precomputation.in.bind(to_precomputation);
-
-    to_distribution.set_name("precomputation.out");
-    environment.stall(to_distribution, to_distribution.name());
-    to_distribution.connect_source(precomputation);
-    precomputation.out.bind(to_distribution);
-    const ArrayShare& share = environment.share;
-    if (share.contains(0)) {
-        to_distribution.connect_sink(distribution.row(0));
-        distribution.row(0).in = &to_distribution;
+void MachineParts::make_lanes() {
+    const int count = environment.feed_lanes();
+    for (int lane = 0; lane < count; ++lane) {
+        const int first = rows_of_lane(lane, count, environment.height()).first;
+        if (!environment.share.contains(first)) continue;
+        lanes.push_back(std::make_unique<FeedLane>(environment, lane, count));
+        Link& link = lanes.back()->trapezes;
+        link.connect_sink(distribution.row(first));
+        distribution.row(first).in = &link;
     }
 }
 
@@ -67,10 +56,23 @@ void MachineParts::bind_rows() {
     }
 }
 
-const Link& MachineParts::input_of_row(int y) const {
-    const std::size_t no_link = environment.share.rows().front() == 0;  // no link leads into row 0
-    return y == 0 ? to_distribution
-                  : *distribution.links()[std::size_t(environment.share.place(y)) - no_link];
+const FeedLane* MachineParts::lane_at(int y) const {
+    for (const auto& lane : lanes) {
+        if (lane->rows.first == y) return lane.get();
+    }
+    return nullptr;
+}
+
+StageStatistics MachineParts::geometry() const {
+    StageStatistics sum;
+    for (const auto& lane : lanes) sum += lane->geometry.statistics();
+    return sum;
+}
+
+StageStatistics MachineParts::precomputation() const {
+    StageStatistics sum;
+    for (const auto& lane : lanes) sum += lane->precomputation.statistics();
+    return sum;
 }
 
 Cycle MachineParts::slow_ray() const {

@@ -8,8 +8,7 @@
 #include "pipeline/ranks/rank_exchange.hpp"
 #include "pipeline/stages/distribution.hpp"
 #include "pipeline/stages/exterior.hpp"
-#include "pipeline/stages/geometry.hpp"
-#include "pipeline/stages/precomputation.hpp"
+#include "pipeline/stages/feed_lane.hpp"
 
 namespace raycell {
 
@@ -21,8 +20,11 @@ struct MachineParts {
                  const ExteriorTracer* tracer, const SyntheticTraffic* traffic,
                  const Granularity& granularity, RankExchange* other_ranks);
 
-    /// The input link of the distributor of row y.
-    const Link& input_of_row(int y) const;
+    /// The lane that begins in row y; null if none does, or if it is another rank's.
+    const FeedLane* lane_at(int y) const;
+    /// Statistics of the geometry, or of the precomputation, of all lanes here.
+    StageStatistics geometry() const;
+    StageStatistics precomputation() const;
     /// Number of cells of the whole array, over all ranks.
     std::uint64_t cell_count() const {
         return std::uint64_t(environment.width()) * std::uint64_t(environment.height());
@@ -30,22 +32,18 @@ struct MachineParts {
     /// Cycles of a slow ray, its answer and its longest back-off.
     Cycle slow_ray() const;
 
-    static constexpr int stage_link_depth = 4;  ///< messages between two stages before the array
-    RankExchange* const ranks;                  ///< null: the whole machine is here
+    RankExchange* const ranks;  ///< null: the whole machine is here
     Scheduler scheduler;
     Picture picture;
     Environment environment;
-    Geometry geometry;
-    Precomputation precomputation;
+    std::vector<std::unique_ptr<FeedLane>> lanes;  ///< those whose first row is here
     Distribution distribution;
     Array array;
     std::unique_ptr<Exterior> exterior;
-    Link to_precomputation;
-    Link to_distribution;
     std::vector<std::unique_ptr<Link>> row_links;  ///< from each row's distributor into its first cell
 
   private:
-    void bind_stages();
+    void make_lanes();
     void bind_rows();
 };
 

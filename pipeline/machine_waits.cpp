@@ -24,8 +24,13 @@ WaitGraph MachineWaits::graph() const {
 
 void MachineWaits::add_places(const Band& band, WaitMap& map) const {
     for (int y = band.first; y < band.end; ++y) {
-        if (parts_.environment.phase == Phase::load)
-            parts_.distribution.row(y).add_places(map, parts_.input_of_row(y));
+        if (parts_.environment.phase == Phase::load) {
+            if (const FeedLane* lane = parts_.lane_at(y)) {
+                lane->geometry.add_places(map);
+                lane->precomputation.add_places(map, lane->polygons);
+            }
+            parts_.distribution.row(y).add_places(map);
+        }
         for (int x = 0; x < parts_.environment.width(); ++x)
             raycell::add_places(parts_.array.cell(x, y), map);
     }
@@ -33,36 +38,26 @@ void MachineWaits::add_places(const Band& band, WaitMap& map) const {
 
 void MachineWaits::add_waits(const Band& band, WaitMap& map) const {
     for (int y = band.first; y < band.end; ++y) {
-        if (parts_.environment.phase == Phase::load)
-            parts_.distribution.row(y).add_waits(map, parts_.input_of_row(y));
+        if (parts_.environment.phase == Phase::load) {
+            if (const FeedLane* lane = parts_.lane_at(y)) {
+                lane->geometry.add_waits(map);
+                lane->precomputation.add_waits(map, lane->polygons);
+            }
+            parts_.distribution.row(y).add_waits(map);
+        }
         for (int x = 0; x < parts_.environment.width(); ++x) raycell::add_waits(parts_.array.cell(x, y), map);
     }
 }
 
-/// Whether this rank has the places outside the array: the first stages (load) or the exterior.
-bool MachineWaits::has_outside() const {
-    return parts_.environment.phase == Phase::load ? parts_.environment.share.contains(0)
-                                                   : parts_.exterior != nullptr;
-}
+/// Whether this rank has the places outside the array: the exterior.
+bool MachineWaits::has_outside() const { return parts_.environment.phase != Phase::load && parts_.exterior; }
 
 void MachineWaits::add_outside_places(WaitMap& map) const {
-    if (!has_outside()) return;
-    if (parts_.environment.phase != Phase::load) {
-        parts_.exterior->add_places(map);
-        return;
-    }
-    parts_.geometry.add_places(map);
-    parts_.precomputation.add_places(map, parts_.to_precomputation);
+    if (has_outside()) parts_.exterior->add_places(map);
 }
 
 void MachineWaits::add_outside_waits(WaitMap& map) const {
-    if (!has_outside()) return;
-    if (parts_.environment.phase != Phase::load) {
-        parts_.exterior->add_waits(map);
-        return;
-    }
-    parts_.geometry.add_waits(map);
-    parts_.precomputation.add_waits(map, parts_.to_precomputation);
+    if (has_outside()) parts_.exterior->add_waits(map);
 }
 
 /// A buffer of a half link whose source is another rank's, and its node, counted within a band.

@@ -12,9 +12,8 @@ InFlight Results::in_flight() const {
     if (parts_.exterior) there.rays += std::uint64_t(parts_.exterior->working());  // no longer in the pool
     there.rays = joined_.sum(there.rays);
     there.answers = joined_.sum(pools.answers.in_use());
-    there.upstream = parts_.geometry.holds() + std::uint64_t(parts_.to_precomputation.occupancy(0)) +
-                     parts_.precomputation.holds() + std::uint64_t(parts_.to_distribution.occupancy(0)) +
-                     parts_.distribution.holds();
+    there.upstream = parts_.distribution.holds();
+    for (const auto& lane : parts_.lanes) there.upstream += lane->holds();
     there.upstream = joined_.sum(there.upstream);
     there.loads = joined_.sum(pools.loads.in_use()) - there.upstream;
     return there;
@@ -41,13 +40,10 @@ void Results::check_conservation(const InFlight& there, bool completed) const {
 
 void Results::collect(RunResult& result) const {
     result.counters = totals_;
-    result.geometry = parts_.geometry.statistics();
-    result.precomputation = parts_.precomputation.statistics();
-    result.distribution =
-        joined_.of_all(parts_.distribution.statistics(), [](StageStatistics& a, const StageStatistics& b) {
-            a.items += b.items;
-            a.busy_cycles += b.busy_cycles;
-        });
+    const auto add = [](StageStatistics& a, const StageStatistics& b) { a += b; };
+    result.geometry = joined_.of_all(parts_.geometry(), add);
+    result.precomputation = joined_.of_all(parts_.precomputation(), add);
+    result.distribution = joined_.of_all(parts_.distribution.statistics(), add);
     if (parts_.exterior) result.exterior = parts_.exterior->statistics();
     collect_cells(result);
     result.schedule_hash = joined_.schedule_hash();

@@ -9,6 +9,7 @@
 #include "cells/meters/meters.hpp"
 #include "model/machine/untimed.hpp"
 #include "pipeline/activity.hpp"
+#include "pipeline/binding.hpp"
 #include "pipeline/stages/stage.hpp"
 
 namespace raycell {
@@ -49,6 +50,8 @@ struct RunResult {
     Cycle load_cycles = 0;
     Cycle precast_cycles = 0;
     Cycle trace_cycles = 0;
+    Binding load_binding;
+    Binding trace_binding;  ///< of precast and trace
     StageStatistics geometry;
     StageStatistics precomputation;
     StageStatistics distribution;

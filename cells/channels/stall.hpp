@@ -47,7 +47,7 @@ class StallCycles {
     std::array<std::uint64_t, stall_causes> cycles_{};
 };
 
-/// Counters of a cell over precast and trace (load_hops: over loading). They are sums, so the order of cells
+/// Counters of a cell over precast and trace (load_hops, loading_cycles: over loading). They are sums, so the order of cells
 /// does not matter. The counters of every hop and the most frequent causes come first, in one cache line.
 struct CellStatistics {
     std::uint64_t ray_hops = 0;     ///< rays sent to neighbours
@@ -57,6 +57,7 @@ struct CellStatistics {
     std::uint64_t load_hops = 0;  ///< load messages passed on
     std::uint64_t postponed = 0;  ///< rays destroyed here for lack of a slot
     std::uint64_t shading_cycles = 0;
+    std::uint64_t loading_cycles = 0;  ///< of making voxels
     std::uint64_t slot_cycles = 0;  ///< summed over slots: cycles in which each was taken
 };
 

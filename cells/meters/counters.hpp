@@ -6,7 +6,7 @@
 
 namespace raycell {
 
-/// Counters of a run: sums and, last, one maximum, so they do not depend on the order in which cells run.
+/// Counters of a run: sums and, last, three maxima, so they do not depend on the order in which cells run.
 struct Counters {
     RayCounts rays;
     std::uint64_t load_hops = 0;
@@ -26,6 +26,8 @@ struct Counters {
     std::uint64_t slot_cycles = 0;  ///< sum over accepted rays of the cycles in the ray store
     std::uint64_t traversal_cycles = 0;
     std::uint64_t shading_cycles = 0;
+    std::uint64_t most_kept = 0;       ///< spans that a cell kept at a time until their voxels were made
+    std::uint64_t most_load_bits = 0;  ///< of a cell's memory of voxels, with the spans that wait in it
     Cycle last_progress =
         0;  ///< last cycle in which an end-of-scene mark, or an answer other than "postponed", came home
 };

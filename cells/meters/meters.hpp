@@ -26,9 +26,10 @@ class CellMeter {
     const CellStatistics& statistics() const { return statistics_; }
     std::uint64_t hash() const { return hash_.value(); }
     /// Restores the state after loading, from a saved array.
-    void restore(std::uint64_t hash, std::uint64_t load_hops) {
+    void restore(std::uint64_t hash, std::uint64_t load_hops, std::uint64_t loading_cycles) {
         hash_ = Fnv(hash);
         statistics_.load_hops = load_hops;
+        statistics_.loading_cycles = loading_cycles;
     }
 
     /// Adds (cycle, event, detail) to the hash of the cell's schedule. The array joins the hashes in the
@@ -37,17 +38,20 @@ class CellMeter {
         for (const std::uint64_t word : {now, std::uint64_t(event), std::uint64_t(detail)}) hash_.add(word);
     }
     /// A load message was taken; it ends here (`ends`) or moves on.
-    void loaded(Counters& all, LoadItem::Kind kind, bool ends, Cycle now) {
-        if (kind == LoadItem::Kind::end_of_scene) {
-            ++all.cells_loaded;
-            all.last_progress = now;
-        }
+    void load_passed(Counters& all, bool ends) {
         if (ends) {
             ++all.loads_delivered;
         } else {
             ++all.load_hops;
             ++statistics_.load_hops;
         }
+    }
+    /// A span is kept, whose voxel takes `cycles` cycles.
+    void kept(Cycle cycles) { statistics_.loading_cycles += cycles; }
+    /// The end-of-scene mark has passed and the cell's last voxel is made.
+    void loaded(Counters& all, Cycle now) {
+        ++all.cells_loaded;
+        all.last_progress = now;
     }
     /// A ray's test of `cycles` cycles began.
     void tested(Counters& all, const Visit& visit, std::uint32_t cycles) {

@@ -100,11 +100,11 @@ UnitView CellView::shading_unit() const {
 }
 
 UnitView CellView::loading_unit() const {
-    const LoadItem* item = cell_.loading_unit().item();
-    if (!item) return {};
-    return {now_ < cell_.loading_unit().done() ? UnitView::State::busy : UnitView::State::blocked,
-            LoadingUnit::makes_voxel(*item, cell_.x()) ? UnitView::Operation::make_voxel
-                                                       : UnitView::Operation::pass_on,
+    using Operation = UnitView::Operation;
+    const LoadingUnit& unit = cell_.loading_unit();
+    if (now_ < unit.made()) return {UnitView::State::busy, Operation::make_voxel, UnitView::no_ray};
+    if (!unit.item()) return {};
+    return {now_ < unit.done() ? UnitView::State::busy : UnitView::State::blocked, Operation::pass_on,
             UnitView::no_ray};
 }
 

@@ -2,17 +2,32 @@
 
 namespace raycell {
 
-LoadItem* LoadingUnit::work(const LinkIn& from, int x, const CostTable& costs, HitTest rung, Cycle now,
-                            Wakeup& wakeup) {
+LoadItem* LoadingUnit::work(const LinkIn& from, int x, const CostTable& costs, Cycle now, Wakeup& wakeup) {
     const Message message = from.front(0);
     if (message.kind != Message::Kind::load) return nullptr;
     if (item_ != message.load) {  // just arrived
         item_ = message.load;
-        done_ = now + (makes_voxel(*item_, x) ? costs.load_voxel(rung) : costs.load_forward);
+        done_ = now + (makes_voxel(*item_, x) ? costs.load_advance : costs.load_forward);
     }
     if (now >= done_) return item_;
     wakeup.at(done_);
     return nullptr;
+}
+
+bool LoadingUnit::has_room(int most, Cycle cycles, Cycle now, Wakeup& wakeup) const {
+    if (most == 0 || kept(cycles, now) < most) return true;
+    wakeup.at(made_ - Cycle(most - 1) * cycles);
+    return false;
+}
+
+bool LoadingUnit::closes(Cycle now, Wakeup& wakeup) {
+    if (!closing_) return false;
+    if (now < made_) {
+        wakeup.at(made_);
+        return false;
+    }
+    closing_ = false;
+    return true;
 }
 
 bool LoadingUnit::ends_at(const LoadItem& item, int x, int width) {

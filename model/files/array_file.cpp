@@ -8,7 +8,7 @@
 namespace raycell {
 namespace {
 
-constexpr std::uint64_t magic = 0x326c6c6563796172ULL;  // "raycell" and a version
+constexpr std::uint64_t magic = 0x336c6c6563796172ULL;  // "raycell" and a version
 
 /// Hashes a sequence of numbers. Every number counts as 64 bits, so that writing, reading and hashing share
 /// one list of fields.
@@ -194,10 +194,11 @@ std::uint64_t loading_timing(const MachineSettings& machine) {
     Hasher hasher;
     Put<Hasher> put(hasher);
     put.whole(machine.buffer_depth), put.whole(machine.link_bits);
+    put.whole(machine.feed_bits), put.whole(machine.feed_lanes), put.whole(machine.load_queue);
     const CostTable& c = machine.costs;
-    for (const std::uint32_t cost :
-         {c.load_depth, c.load_interval, c.load_plane, c.load_mask, c.load_edge, c.load_forward,
-          c.geometry_polygon, c.precomputation_trapeze, c.distribution_span, c.distribution_pass})
+    for (const std::uint32_t cost : {c.load_depth, c.load_interval, c.load_plane, c.load_mask, c.load_edge,
+                                     c.load_forward, c.load_advance, c.geometry_polygon, c.geometry_skip,
+                                     c.precomputation_trapeze, c.distribution_span, c.distribution_pass})
         put.whole(cost);
     return hasher.hash();
 }

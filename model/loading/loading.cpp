@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/numbers/tolerance.hpp"
+
 namespace raycell {
 
 namespace {
@@ -52,6 +54,19 @@ bool clip_to_cube(Polygon& polygon, const Box& cube, const Arithmetic& arithmeti
     if (polygon.vertices.empty()) return false;
     if (!arithmetic.exact()) hold(polygon, arithmetic);
     return glm::length(newell(polygon.vertices)) > 0;
+}
+
+bool may_touch_rows(const Polygon& polygon, const Stretch& rows, const Arithmetic& arithmetic) {
+    double low = polygon.vertices[0].y;
+    double high = low;
+    for (const dvec3& v : polygon.vertices) {
+        low = std::min(low, v.y);
+        high = std::max(high, v.y);
+    }
+    // More than rounding and slack add on the way to the trapezes (hold(), precompute()).
+    const double step = arithmetic.exact() ? exact_hair : arithmetic.formats().loading.step();
+    const double more = 4 * polygon.slack + 16 * step;
+    return high + more >= rows.first && low - more <= rows.last + 1;
 }
 
 std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings& settings,

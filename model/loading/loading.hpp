@@ -23,6 +23,10 @@ struct LoadCounts {
     std::uint64_t overflowed = 0;
 };
 
+/// Whether a polygon of the scene, not yet clipped, may have a part in these rows. True for all that have;
+/// what lies within some last bits of a border counts as part of both sides.
+bool may_touch_rows(const Polygon& polygon, const Stretch& rows, const Arithmetic& arithmetic);
+
 /// Loads the array; cells are row-major. Throws nothing: each cell counts the voxels that do not fit.
 std::vector<CellStore> load_array(const CellScene& scene, const PictureSettings& settings,
                                   const Arithmetic& arithmetic, LoadCounts* counts = nullptr);

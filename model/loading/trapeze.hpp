@@ -52,7 +52,7 @@ struct Trapeze : Surface {
     Stretch rows;  ///< that it touches
     Stretch columns;
     std::array<dvec3, 4> corners{};  ///< in order round it; only Gouraud's interpolation needs them
-    int corner_count = 0;          ///< a triangle repeats none
+    int corner_count = 0;            ///< a triangle repeats none
     /// True if a row below `row` still has a part of the trapeze.
     bool reaches_below(int row) const { return rows.last > row; }
 };

@@ -124,9 +124,13 @@ RegisterBits register_bits(const PictureSettings& picture, const MachineSettings
     bits.outputs = side_count * std::max(ray, messages.intensity);
     bits.traversal = traversal_bits(machine, formats, ray_inputs);
     bits.shading = shading_bits(slot_bits(picture, machine, formats, sources), machine, messages, formats);
-    bits.loading = std::max(messages.longest_span() - ray, 0);
+    bits.loading = kept_span_bits(messages);
     bits.latches = messages.viewer + int(sources) * messages.source;  // the background is the viewer's
     return bits;
+}
+
+int kept_span_bits(const MessageBits& messages) {
+    return messages.longest_span() + messages.features - 2 * field::type;
 }
 
 StorageBits storage_bits(const PictureSettings& picture, const MachineSettings& machine,

@@ -30,7 +30,7 @@ struct RegisterBits {
     int outputs = 0;    ///< the message that leaves over each side, while its place is taken by the next
     int traversal = 0;  ///< working registers of the traversal unit
     int shading = 0;    ///< of the shading unit, with a hit that has no slot and its reply
-    int loading = 0;    ///< of the loading unit: the part of a span that its buffer does not hold
+    int loading = 0;    ///< of the loading unit: a span and its object's features, whose voxel is being made
     int latches = 0;    ///< viewer, background and sources, from the load messages
     int total() const {
         return own_ray + decisions + ages + credits + outputs + traversal + shading + loading + latches;
@@ -38,6 +38,9 @@ struct RegisterBits {
 };
 RegisterBits register_bits(const PictureSettings& picture, const MachineSettings& machine,
                            const Formats& formats, std::size_t sources);
+
+/// Bits of a span that waits in a cell for its voxel, with its object's features.
+int kept_span_bits(const MessageBits& messages);
 
 /// What a cell with four neighbours stores, bits.
 struct StorageBits {

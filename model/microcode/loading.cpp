@@ -179,7 +179,6 @@ MicroProgram voxel_program(const MicroSetting& setting, const DepthLevels& level
     Assembler a(names[int(rung)], setting.datapath, setting.numbers.rounding);
     LoadingWriter writer(a, setting, levels);
     const bool depth = rung == HitTest::depth;
-    writer.take_way();
     if (depth) {
         writer.take_depth_span();
     } else {
@@ -206,15 +205,7 @@ MicroProgram voxel_program(const MicroSetting& setting, const DepthLevels& level
     if (rung == HitTest::interval) writer.slopes();
     if (rung >= HitTest::plane) writer.plane();
     writer.normal(normals, rung);
-    const RegisterIndex made = a.reg("made", 2, 0);
-    a.move(made, a.constant("yes", 1, 2, 0));
-    a.jump("advance");
-    a.label("none");
-    a.move(made, a.constant("no", 0, 2, 0));
-    a.label("advance");
-    writer.advance(rung, normals);
-    a.end();
-    return a.finish();
+    return finish_making(a);
 }
 
 MicroProgram part_program(const MicroSetting& setting, const DepthLevels& levels) {

@@ -149,10 +149,10 @@ MicroProgram plane_of_voxel_program(const MicroSetting& setting);
 /// "normal bz", "normal ux", "normal vx" and so on.
 MicroProgram normal_of_voxel_program(const MicroSetting& setting, Normals normals);
 
-/// What a cell does with a span that makes a voxel: the first piece of a polygon in the cell. In: a span, its
-/// x and last, normals. Out: made (0: the polygon does not touch the cell); that of `levels`, the voxel's
+/// What a cell does with a span that it keeps: the first piece of a polygon in the cell. In: a span,
+/// normals. Out: made (0: the polygon does not touch the cell); that of `levels`, the voxel's
 /// plane and normals, "point u", "point v", "twice area", corners, crossings (how many edges), "kept a 0" and
-/// so on (the edges); the span advanced. At rung `mask` without the mask.
+/// so on (the edges). At rung `mask` without the mask.
 MicroProgram voxel_program(const MicroSetting& setting, const DepthLevels& levels, HitTest rung,
                            Normals normals);
 

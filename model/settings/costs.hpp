@@ -73,13 +73,15 @@ struct CostTable {
     std::uint32_t route_return;  ///< an answer from its arrival to an output or home
     std::uint32_t backoff;       ///< shortest wait before a postponed ray is sent again
     // Loading.
-    std::uint32_t load_depth;  ///< a cell makes its voxel and advances the span, rung `depth`
+    std::uint32_t load_depth;  ///< a cell makes its voxel from a span, rung `depth`
     std::uint32_t load_interval;
     std::uint32_t load_plane;
     std::uint32_t load_mask;
     std::uint32_t load_edge;
+    std::uint32_t load_advance;  ///< moves a span on to the next cell, beside the making of its voxel
     std::uint32_t load_forward;  ///< a cell latches or only passes a load message
     std::uint32_t geometry_polygon;
+    std::uint32_t geometry_skip;  ///< finds that an object or a polygon has no part in a lane's rows
     std::uint32_t precomputation_trapeze;
     std::uint32_t distribution_span;  ///< a row cuts its span from a trapeze
     std::uint32_t distribution_pass;

@@ -72,6 +72,11 @@ struct MachineSettings {
     Recovery recovery = Recovery::postpone;
     Slots slots = Slots::reserved;
     int link_bits = 20;  ///< bits that cross a link per cycle, >= 1
+    /// Spans that a cell keeps until their voxels are made, the one at work included, >= 1; 0: no limit. All
+    /// but that one stand in the voxels' memory.
+    int load_queue = 0;
+    int feed_lanes = 16;  ///< ways from geometry to the rows, >= 1; no more than there are rows are used
+    int feed_bits = 128;  ///< bits that cross a link of the feed per cycle, >= 1
     double clock_mhz = 20;
     std::int64_t max_cycles = 0;   ///< 0: no limit
     int exterior_processors = 64;  ///< >= 1

@@ -1,6 +1,9 @@
 #include "pipeline/stages/distribution.hpp"
 
+#include <algorithm>
+
 #include "cells/channels/split_link.hpp"
+#include "pipeline/stages/feed_lane.hpp"
 
 namespace raycell {
 namespace {
@@ -13,7 +16,7 @@ void RowDistributor::take(LoadItem& item, Cycle now) {
     Environment& env = environment();
     item_ = &item;
     passed_on_ = false;
-    const bool last_row = row_ + 1 == env.height();
+    const bool last_row = down == nullptr;
     Cycle cycles = env.costs().distribution_pass;
     if (item.kind == LoadItem::Kind::surface) {
         surface_ = item.trapeze;
@@ -58,7 +61,7 @@ Cycle RowDistributor::step(Cycle now) {
         to_row_ = nullptr;
     }
     if (goes_down_ && down->can_send(0, retry)) {
-        send_load(*down, *item_, env);
+        send_feed(*down, *item_, env);
         goes_down_ = false;
         passed_on_ = true;
     }
@@ -76,12 +79,18 @@ Distribution::Distribution(sc_core::sc_module_name name, Environment& environmen
     dont_initialize();
     for (const int y : share_.rows())
         rows_.push_back(std::make_unique<RowDistributor>(environment, y, active_, wake_));
+    for (int lane = 0; lane < environment.feed_lanes(); ++lane)
+        lane_starts_.push_back(rows_of_lane(lane, environment.feed_lanes(), environment.height()).first);
     for (const Band& band : share_.bands()) {
         for (int y = band.first; y < band.end; ++y) {
-            if (y > 0) join_above(environment, y, y == band.first ? band.above : nullptr);
+            if (!begins_lane(y)) join_above(environment, y, y == band.first ? band.above : nullptr);
         }
-        if (band.below) join_below(environment, band.end - 1, *band.below);
+        if (band.below && !begins_lane(band.end)) join_below(environment, band.end - 1, *band.below);
     }
+}
+
+bool Distribution::begins_lane(int y) const {
+    return std::binary_search(lane_starts_.begin(), lane_starts_.end(), y);
 }
 
 void Distribution::run() {
@@ -116,10 +125,7 @@ void Distribution::join_below(Environment& environment, int y, SplitLinks& below
 
 StageStatistics Distribution::statistics() const {
     StageStatistics sum;
-    for (const auto& row : rows_) {
-        sum.items += row->statistics().items;
-        sum.busy_cycles += row->statistics().busy_cycles;
-    }
+    for (const auto& row : rows_) sum += row->statistics();
     return sum;
 }
 

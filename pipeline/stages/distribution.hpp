@@ -10,17 +10,17 @@
 
 namespace raycell {
 
-/// The distributor of one row. Those of all rows share the process of Distribution: one process for each would
-/// cost more than what it does.
+/// The distributor of one row. Those of all rows share the process of Distribution: one process for each
+/// would cost more than what it does.
 class RowDistributor : public StageWork {
   public:
     /// `active` has the distributors that must run in this cycle, `wake` runs them.
     RowDistributor(Environment& environment, int row, std::vector<RowDistributor*>& active,
                    sc_core::sc_event& wake)
         : StageWork(environment), row_(row), active_(active), wake_(wake) {}
-    Link* in = nullptr;    ///< from the row above; in row 0 from precomputation
+    Link* in = nullptr;    ///< from the row above; in a lane's first row from precomputation
     Link* east = nullptr;  ///< into the row's first cell
-    Link* down = nullptr;  ///< to the row below; null in the last row
+    Link* down = nullptr;  ///< to the row below; null in a lane's last row
     void activate() override {
         if (active_.empty()) wake_.notify();
         active_.push_back(this);
@@ -30,10 +30,9 @@ class RowDistributor : public StageWork {
     std::size_t holds() const { return to_row_ ? 1 : 0; }
     /// Whether its message stands in two links: already passed on, but not yet taken from the input.
     bool works_on_what_it_passed_on() const { return item_ && passed_on_; }
-    /// Its part of the wait-for graph, with its input link and the link into the row; `input` is the link
-    /// bound to `in`.
-    void add_places(WaitMap& map, const Link& input) const;
-    void add_waits(WaitMap& map, const Link& input) const;
+    /// Its part of the wait-for graph, with its input link and the link into the row.
+    void add_places(WaitMap& map) const;
+    void add_waits(WaitMap& map) const;
 
   private:
     Cycle step(Cycle now) override;
@@ -50,8 +49,8 @@ class RowDistributor : public StageWork {
     Cycle ready_ = 0;
 };
 
-/// The column of distributors; that of row 0 takes the messages of precomputation. With several ranks, only
-/// those of this rank's rows.
+/// The column of distributors; that of a lane's first row takes the messages of its precomputation. With
+/// several ranks, only those of this rank's rows.
 class Distribution : public sc_core::sc_module {
   public:
     SC_HAS_PROCESS(Distribution);
@@ -61,15 +60,17 @@ class Distribution : public sc_core::sc_module {
     StageStatistics statistics() const;
     /// Number of load messages in the column, apart from those in rows of cells.
     std::size_t holds() const;
-    /// The links into each row but row 0, from the row above.
+    /// The links between rows of a lane, from the top down.
     const std::vector<std::unique_ptr<Link>>& links() const { return links_; }
 
   private:
     void run();
+    bool begins_lane(int y) const;
     void join_above(Environment& environment, int y, SplitLinks* above);
     void join_below(Environment& environment, int y, SplitLinks& below);
 
     const ArrayShare& share_;
+    std::vector<int> lane_starts_;  ///< first rows
     std::vector<std::unique_ptr<RowDistributor>> rows_;
     std::vector<RowDistributor*> active_;  ///< in this cycle
     sc_core::sc_event wake_;

@@ -4,6 +4,33 @@
 
 namespace raycell {
 
+bool Geometry::find_polygon() {
+    const Environment& env = environment();
+    const std::vector<Polygon>& polygons = env.context.scene.polygons;
+    const Cycle skip = env.costs().geometry_skip;
+    const bool all_rows = rows_.first == 0 && rows_.last + 1 == env.height();
+    const auto here = [&](std::size_t i) {
+        return all_rows || may_touch_rows(polygons[i], rows_, env.context.arithmetic);
+    };
+    for (; polygon_ < polygons.size(); ++polygon_) {
+        if (polygon_ >= looked_up_to_) {  // an object that none of its polygons brings here is one look
+            std::size_t end = polygon_;
+            bool any = false;
+            for (; end < polygons.size() && polygons[end].object == polygons[polygon_].object; ++end)
+                any = any || here(end);
+            looked_up_to_ = end;
+            if (!any) {
+                work_ += skip;
+                polygon_ = end - 1;
+                continue;
+            }
+        }
+        if (here(polygon_)) return true;
+        work_ += skip;
+    }
+    return false;
+}
+
 LoadItem* Geometry::next_item() {
     Environment& env = environment();
     const CellScene& scene = env.context.scene;
@@ -17,7 +44,7 @@ LoadItem* Geometry::next_item() {
         setup_sent_ = true;
         return make(LoadItem::Kind::setup);
     }
-    while (polygon_ < scene.polygons.size()) {
+    while (find_polygon()) {
         const Polygon& next = scene.polygons[polygon_];
         Polygon polygon = next;
         if (!clip_to_cube(polygon, scene.frame.cube(), environment().context.arithmetic)) {
@@ -54,7 +81,7 @@ Cycle Geometry::step(Cycle now) {
     if (now < ready_) return ready_;
     Cycle retry = never;
     if (!out->can_send(0, retry)) return retry;
-    send_load(*out.operator->(), *item_, env);
+    send_feed(*out.operator->(), *item_, env);
     item_ = nullptr;
     return now + 1;
 }

@@ -18,7 +18,8 @@ WaitGraph::Node place(Kind kind, int y, std::string what) {
     return node;
 }
 
-void add_stage(WaitMap& map, const StageWork& stage, int y, const char* what, const LoadItem& item, Cycle since) {
+void add_stage(WaitMap& map, const StageWork& stage, int y, const char* what, const LoadItem& item,
+               Cycle since) {
     WaitGraph::Node node = place(Kind::stage, y, what);
     node.holds = describe(item);
     node.since = since;
@@ -49,17 +50,17 @@ const Link& link_of(const sc_core::sc_port_b<LinkOut>& out) {
 
 }  // namespace
 
-void RowDistributor::add_places(WaitMap& map, const Link& input) const {
-    add_buffer(map, input, 0, place(Kind::buffer, row_, "input of the row's distributor"));
+void RowDistributor::add_places(WaitMap& map) const {
+    add_buffer(map, *in, 0, place(Kind::buffer, row_, "input of the row's distributor"));
     if (to_row_) add_stage(map, *this, row_, "the row's distributor", *to_row_, ready_);
     add_buffer(map, *east, 0, place(Kind::buffer, row_, "input of the row's first cell"));
 }
 
-void RowDistributor::add_waits(WaitMap& map, const Link& input) const {
+void RowDistributor::add_waits(WaitMap& map) const {
     const Cycle now = environment().scheduler.now();
     const auto stage = map.find(static_cast<const StageWork*>(this), Kind::stage, 0);
     if (stage) map.set(*stage, wants_out(map, now, ready_, *east, "the row's first cell"));
-    const auto node = map.find(&input, Kind::buffer, 0);
+    const auto node = map.find(in, Kind::buffer, 0);
     if (!node) return;
     if (!item_ || now < ready_) {
         map.set(*node, Wants::nothing(item_ ? "the end of the distributor's work" : "its arrival"));
@@ -81,7 +82,7 @@ void RowDistributor::add_waits(WaitMap& map, const Link& input) const {
 }
 
 void Geometry::add_places(WaitMap& map) const {
-    if (item_) add_stage(map, *this, 0, "geometry", *item_, ready_);
+    if (item_) add_stage(map, *this, rows_.first, "geometry", *item_, ready_);
 }
 
 void Geometry::add_waits(WaitMap& map) const {
@@ -91,8 +92,8 @@ void Geometry::add_waits(WaitMap& map) const {
 }
 
 void Precomputation::add_places(WaitMap& map, const Link& input) const {
-    add_buffer(map, input, 0, place(Kind::buffer, 0, "input of precomputation"));
-    if (item_) add_stage(map, *this, 0, "precomputation", *item_, ready_);
+    add_buffer(map, input, 0, place(Kind::buffer, rows_.first, "input of precomputation"));
+    if (item_) add_stage(map, *this, rows_.first, "precomputation", *item_, ready_);
 }
 
 void Precomputation::add_waits(WaitMap& map, const Link& input) const {

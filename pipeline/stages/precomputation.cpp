@@ -1,5 +1,7 @@
 #include "pipeline/stages/precomputation.hpp"
 
+#include <algorithm>
+
 namespace raycell {
 
 void Precomputation::take(LoadItem& item) {
@@ -9,6 +11,10 @@ void Precomputation::take(LoadItem& item) {
     }
     const Environment& env = environment();
     trapezes_ = precompute(item.polygon, env.context.arithmetic, env.width(), env.height());
+    const auto beside = [&](const Trapeze& t) {
+        return t.rows.last < rows_.first || t.rows.first > rows_.last;
+    };
+    trapezes_.erase(std::remove_if(trapezes_.begin(), trapezes_.end(), beside), trapezes_.end());
     next_ = 0;
     surface_sent_ = false;
     environment().pools.loads.give_back(&item);
@@ -44,7 +50,7 @@ Cycle Precomputation::step(Cycle now) {
     if (!item_) return now + 1;
     if (now < ready_) return ready_;
     if (!out->can_send(0, retry)) return retry;
-    send_load(*out.operator->(), *item_, env);
+    send_feed(*out.operator->(), *item_, env);
     item_ = nullptr;
     return now + 1;
 }

@@ -10,7 +10,9 @@ namespace raycell {
 
 class Precomputation : public Stage {
   public:
-    Precomputation(sc_core::sc_module_name name, Environment& environment) : Stage(name, environment) {}
+    /// `rows`: those of its lane; trapezes that lie beside them are not made.
+    Precomputation(sc_core::sc_module_name name, Environment& environment, Stretch rows)
+        : Stage(name, environment), rows_(rows) {}
     sc_core::sc_port<LinkIn> in;
     sc_core::sc_port<LinkOut> out;
 
@@ -24,6 +26,7 @@ class Precomputation : public Stage {
     Cycle step(Cycle now) override;
     void take(LoadItem& item);
 
+    Stretch rows_;
     std::vector<Trapeze> trapezes_;  ///< of the polygon at work
     std::size_t next_ = 0;
     bool surface_sent_ = false;

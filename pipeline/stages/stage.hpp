@@ -13,6 +13,11 @@ namespace raycell {
 struct StageStatistics {
     std::uint64_t items = 0;        ///< polygons, trapezes or spans sent; in the exterior, rays taken
     std::uint64_t busy_cycles = 0;  ///< at work, without waits for room downstream
+    StageStatistics& operator+=(const StageStatistics& other) {
+        items += other.items;
+        busy_cycles += other.busy_cycles;
+        return *this;
+    }
 };
 
 /// What every stage has, whichever process runs it.

@@ -9,6 +9,7 @@ STUDIES = {
     "time_outs": "studies.time_outs.sweep",
     "sweep": "studies.sweeps.snakemake",
     "datapaths": "studies.datapaths",
+    "feed": "studies.feed",
     "ladder": "studies.ladder",
     "figures": "studies.figures",
     "stability": "studies.stability",

@@ -29,6 +29,7 @@ constexpr Cycle set_up = 20 + 7 + root;  // point and interpolated normal
 constexpr Cycle reflect = 6 + root + 2 * reciprocal;
 constexpr Cycle shade = 6;
 constexpr Cycle load_voxel = 12;
+constexpr Cycle load_advance = 1;
 constexpr Cycle load_forward = 1;
 constexpr Cycle backoff = 64;
 
@@ -95,7 +96,7 @@ inline Script mirrored_cell(const std::string& name, const std::string& says) {
     mirror.shine = 1e9;
     script.setup().scene.objects.push_back(mirror);
     script.in(1, Side::west, 1, span_of(script.setup(), 0, {1.75, 0, 2}, {0, 3, 0}, {0, 0, 6}, 1, 1))
-        .take(2 + load_voxel, Side::west, 0)
+        .take(2 + load_advance, Side::west, 0)
         .trace(walled_trace)
         .pixel(walled_trace + walk + compare, black);
     return script;

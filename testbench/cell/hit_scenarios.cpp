@@ -84,7 +84,7 @@ std::vector<Scenario> hit_scenarios() {
         constexpr Cycle one_edge = compare - 2;  // the other lies on the cell's border
         script.setup().scene.objects.push_back(glowing);
         script.in(1, Side::west, 1, span_of(script.setup(), 0, {1, 0, 4}, {0.9, 0, 0}, {0, 3, 0}, 1, 1))
-            .take(2 + load_voxel, Side::west, 0)
+            .take(2 + load_advance, Side::west, 0)
             .trace(walled_trace)
             .pixel(walled_trace + walk + one_edge + set_up + shade, dvec3(0.25));
         all.push_back(script.until(sent + 1000));

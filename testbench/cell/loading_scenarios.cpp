@@ -42,7 +42,7 @@ std::vector<Scenario> loading_scenarios() {
         all.push_back(script.until(last + 100));
     }
     {
-        Script script("span", "a span that reaches on makes a voxel, advances by one cell and goes on");
+        Script script("span", "a span that reaches on is kept for a voxel, advances by one cell and goes on");
         script.setup().scene.objects.push_back(Material());
         const LoadItem here = span_of(script.setup(), 4, {0.5, 0, 4}, {2, 0, 0}, {0, 3, 0}, 1, 1);
         LoadItem next = here;
@@ -51,8 +51,35 @@ std::vector<Scenario> loading_scenarios() {
         for (int i = 0; i < next.span.edge_count; ++i)
             next.span.edges[std::size_t(i)].c += next.span.edges[std::size_t(i)].a;
         script.in(1, Side::west, 1, here)
-            .take(2 + load_voxel, Side::west, 0)
-            .out(2 + load_voxel, Side::east, span_link, next);
+            .take(2 + load_advance, Side::west, 0)
+            .out(2 + load_advance, Side::east, span_link, next);
+        all.push_back(script.until(100));
+    }
+    {
+        Script script("span_full", "a span that may not be kept yet waits until the voxel before it is made");
+        script.setup().scene.objects.push_back(Material());
+        script.setup().machine.load_queue = 1;
+        const LoadItem first = span_of(script.setup(), 4, {0.5, 0, 4}, {1, 0, 0}, {0, 3, 0}, 1, 1);
+        const LoadItem second = span_of(script.setup(), 4, {1.25, 0, 4}, {0.5, 0, 0}, {0, 3, 0}, 1, 1);
+        constexpr Cycle taken = 2 + load_advance;
+        script.in(1, Side::west, 1, first)
+            .take(taken, Side::west, 0)
+            .in(taken + 1, Side::west, 1, second)
+            .take(taken + load_voxel, Side::west, 0);
+        all.push_back(script.until(100));
+    }
+    {
+        Script script("span_by", "a span for cells further east passes a cell that makes a voxel");
+        script.setup().scene.objects.push_back(Material());
+        script.setup().machine.load_queue = 1;
+        const LoadItem here = span_of(script.setup(), 4, {1.25, 0, 4}, {0.5, 0, 0}, {0, 3, 0}, 1, 1);
+        const LoadItem item = span_of(script.setup(), 4, {2.25, 0, 4}, {0.5, 0, 0}, {0, 3, 0}, 1, 1);
+        constexpr Cycle taken = 2 + load_advance;
+        script.in(1, Side::west, 1, here)
+            .take(taken, Side::west, 0)
+            .in(taken + 1, Side::west, 1, item)
+            .take(taken + 2 + load_forward, Side::west, 0)
+            .out(taken + 2 + load_forward, Side::east, span_link, item);
         all.push_back(script.until(100));
     }
     {

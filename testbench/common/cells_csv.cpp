@@ -79,7 +79,8 @@ class Line {
 std::string cells_csv_header() {
     std::string text =
         "x,y,voxels,edges,ray_store_peak,ray_store_mean,ray_buffers_peak,ray_buffers_mean,"
-        "answer_buffers_peak,answer_buffers_mean,link_busy_cycles,traversal_cycles,shading_cycles,hops_load,"
+        "answer_buffers_peak,answer_buffers_mean,link_busy_cycles,traversal_cycles,shading_cycles,loading_"
+        "cycles,hops_load,"
         "hops_ray,hops_return,postponed,stall_cycles";
     for (std::size_t cause = 1; cause <= stall_causes; ++cause) {
         text += std::string(",stall_") + stall_names[cause];
@@ -104,8 +105,8 @@ std::vector<std::string> cells_csv_rows(Machine& machine, const RunResult& resul
         line << cell.x() << cell.y() << std::uint64_t(cell.store().voxels.size())
              << std::uint64_t(cell.store().edges.size()) << cell.ray_store().peak() << stored << in.rays.peak
              << in.rays.mean(cycles) << in.answers.peak << in.answers.mean(cycles) << in.busy_cycles
-             << s.traversal_cycles << s.shading_cycles << s.load_hops << s.ray_hops << s.return_hops
-             << s.postponed << stalls;
+             << s.traversal_cycles << s.shading_cycles << s.loading_cycles << s.load_hops << s.ray_hops
+             << s.return_hops << s.postponed << stalls;
         for (std::size_t cause = 1; cause <= stall_causes; ++cause) line << s.stalls[Stall(cause)];
     }
     return rows;

@@ -293,6 +293,12 @@ void add_scene_options(OptionTable& table, RenderOptions& options) {
 void add_link_options(OptionTable& table, MachineSettings& m) {
     table.group("Links and clock");
     table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
+    table.number("load-queue", m.load_queue, 0, 65535,
+                 "spans that a cell keeps until their voxels are made; 0: no limit");
+    table.number("feed-bits", m.feed_bits, 1, 4096,
+                 "bits that cross a link of the feed per cycle: from geometry to the rows' distributors");
+    table.number("feed-lanes", m.feed_lanes, 1, 4096,
+                 "geometry and precomputation units, each for some of the rows");
     table.number("clock-mhz", m.clock_mhz, 1e-3, 1e5, "clock, MHz");
     table.number(
         "stall", m.stall, 0.0, 0.9,

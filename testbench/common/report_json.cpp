@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "model/machine/bound.hpp"
+#include "model/machine/feed_bits.hpp"
 #include "model/machine/losses.hpp"
 #include "model/machine/storage_bits.hpp"
 #include "model/picture/metrics.hpp"
@@ -130,14 +131,17 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                       {"precast", result.precast_cycles},
                       {"trace", result.trace_cycles},
                       {"total", total}};
+    const auto binding = [](const Binding& b) { return Json{{"cycles", b.cycles}, {"of", name_of(b)}}; };
+    json["bound"] = {{"load", binding(result.load_binding)}, {"trace", binding(result.trace_binding)}};
     const std::uint64_t pixels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
     const bool whole = result.verdict == Verdict::completed || result.verdict == Verdict::capacity;
     json["pixels"] = {{"all", pixels}, {"completed", whole ? pixels : c.pixels_done}};
     json["simulated_seconds"] = double(total) / (machine.clock_mhz * 1e6);
-    // The distribution stage has one distributor per row: its utilisation is their mean.
+    // A stage with a unit for each lane, or a distributor for each row: its utilisation is their mean.
+    const Cycle lanes = Cycle(std::min(machine.feed_lanes, picture.height));
     StageStatistics distributors = result.distribution;
-    json["stages"] = {{"geometry", stage(result.geometry, result.load_cycles)},
-                      {"precomputation", stage(result.precomputation, result.load_cycles)},
+    json["stages"] = {{"geometry", stage(result.geometry, result.load_cycles * lanes)},
+                      {"precomputation", stage(result.precomputation, result.load_cycles * lanes)},
                       {"distribution", stage(distributors, result.load_cycles * Cycle(picture.height))},
                       {"exterior", stage(result.exterior, (result.precast_cycles + result.trace_cycles) *
                                                               Cycle(machine.exterior_processors))}};
@@ -180,6 +184,8 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                       {"bits_total", storage.bits},
                       {"max_bits_per_cell", storage.max_cell_bits},
                       {"overflowed", storage.overflowed}};
+    json["load_queue"] = {{"peak", c.most_kept},
+                          {"max_bits_per_cell", std::max(c.most_load_bits, storage.max_cell_bits)}};
     const MessageBits messages = message_bits(picture, machine, formats);
     json["message_bits"] = {{"ray", messages.ray},
                             {"shadow_ray", messages.shadow_ray},
@@ -197,6 +203,11 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                             {"ray_store", stored_bits.ray_store},
                             {"registers", registers_json(register_bits(picture, machine, formats, sources))},
                             {"total", stored_bits.total()}};
+    const FeedBits feed = feed_bits(picture, machine, formats);
+    json["feed_bits"] = {{"buffers", feed.buffers},
+                         {"registers", feed.registers},
+                         {"wires", feed.wires},
+                         {"total", feed.total()}};
     json["formats"] = Json::object();
     for (const auto& [name, format] : formats.names()) json["formats"][name] = format;
     json["ray_store"] = {

@@ -2,9 +2,15 @@
 
 namespace raycell::loading {
 
+bool Layout::absent(std::size_t link) const {
+    if (link_group(link) != LinkGroup::down) return false;
+    const int y = int(link - down(0));
+    return y == last_row(lane_of(y));
+}
+
 UnitGroup Layout::unit_group(std::size_t unit) const {
-    if (unit == geometry) return UnitGroup::geometry;
-    if (unit == precomputation) return UnitGroup::precomputation;
+    if (unit < precomputation(0)) return UnitGroup::geometry;
+    if (unit < distributor(0)) return UnitGroup::precomputation;
     return unit < cell(0, 0) ? UnitGroup::distributors : UnitGroup::cells;
 }
 
@@ -23,13 +29,28 @@ Layout::Place Layout::unit_place(std::size_t unit) const {
     return {};
 }
 
-std::string Layout::unit_name(std::size_t unit) const {
-    const Place place = unit_place(unit);
+int Layout::unit_lane(std::size_t unit) const {
     switch (unit_group(unit)) {
         case UnitGroup::geometry:
-            return "geometry";
+            return int(unit - geometry(0));
         case UnitGroup::precomputation:
-            return "precomputation";
+            return int(unit - precomputation(0));
+        case UnitGroup::distributors:
+        case UnitGroup::cells:
+            break;
+    }
+    return lane_of(unit_place(unit).y);
+}
+
+std::string Layout::unit_name(std::size_t unit) const {
+    const Place place = unit_place(unit);
+    // The stages of an only lane have no number, as in the machine.
+    const std::string lane = lanes == 1 ? std::string() : "_" + std::to_string(unit_lane(unit));
+    switch (unit_group(unit)) {
+        case UnitGroup::geometry:
+            return "geometry" + lane;
+        case UnitGroup::precomputation:
+            return "precomputation" + lane;
         case UnitGroup::distributors:
             return "distribution.row_" + std::to_string(place.y);
         case UnitGroup::cells:
@@ -39,8 +60,8 @@ std::string Layout::unit_name(std::size_t unit) const {
 }
 
 LinkGroup Layout::link_group(std::size_t link) const {
-    if (link == polygons) return LinkGroup::polygons;
-    if (link == trapezes) return LinkGroup::trapezes;
+    if (link < trapezes(0)) return LinkGroup::polygons;
+    if (link < down(0)) return LinkGroup::trapezes;
     if (link < row(0)) return LinkGroup::down;
     return link < row(0) + rows() ? LinkGroup::rows : LinkGroup::east;
 }
@@ -65,9 +86,9 @@ std::string Layout::link_name(std::size_t link) const {
 std::size_t Layout::source_of(std::size_t link) const {
     switch (link_group(link)) {
         case LinkGroup::polygons:
-            return geometry;
+            return geometry(int(link - polygons(0)));
         case LinkGroup::trapezes:
-            return precomputation;
+            return precomputation(int(link - trapezes(0)));
         case LinkGroup::down:
             return distributor(int(link - down(0)));
         case LinkGroup::rows:
@@ -82,9 +103,9 @@ std::size_t Layout::source_of(std::size_t link) const {
 std::size_t Layout::sink_of(std::size_t link) const {
     switch (link_group(link)) {
         case LinkGroup::polygons:
-            return precomputation;
+            return precomputation(int(link - polygons(0)));
         case LinkGroup::trapezes:
-            return distributor(0);
+            return distributor(first_row(int(link - trapezes(0))));
         case LinkGroup::down:
             return source_of(link) + 1;
         case LinkGroup::rows:
@@ -97,12 +118,13 @@ std::size_t Layout::sink_of(std::size_t link) const {
 
 std::size_t Layout::input_of(std::size_t unit) const {
     const Place place = unit_place(unit);
+    const int lane = unit_lane(unit);
     switch (unit_group(unit)) {
         case UnitGroup::geometry:
         case UnitGroup::precomputation:
-            return polygons;
+            return polygons(lane);
         case UnitGroup::distributors:
-            return place.y == 0 ? trapezes : down(place.y - 1);
+            return place.y == first_row(lane) ? trapezes(lane) : down(place.y - 1);
         case UnitGroup::cells:
             break;
     }

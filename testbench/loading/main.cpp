@@ -56,7 +56,7 @@ void add_options(OptionTable& table, Options& options) {
     add_voxel_options(table, run.picture);
     add_word_options(table, run.picture.numbers);
     table.number("buffer", run.machine.buffer_depth, 1, 1024,
-                 "depth of every buffer of distributors and cells, messages");
+                 "depth of every buffer between distributors, before and in cells, messages");
     add_link_options(table, run.machine);
     table.number("seed", run.machine.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1,
                  "of random polygons and stalls");
@@ -86,6 +86,7 @@ NamedFaults check(Loading& loading, LoadWatch& watch) {
     NamedFaults checks;
     if (whole) {
         watch.finish();
+        watch.finish_at(loading.result.load_cycles);
         const Arithmetic arithmetic(loading.picture.numbers, extent_of(loading.scene.frame));
         const std::vector<CellStore> untimed = load_array(loading.scene, loading.picture, arithmetic);
         checks.emplace_back("stores", compare_stores(loading.cells, untimed, loading.plan.layout.width));
@@ -154,7 +155,7 @@ int run(Options& options, const OptionTable& table) {
     const double wall_plan = seconds_since(start);
     // Never destroyed: SystemC takes ports down in quadratic time.
     static Machine* const machine = new Machine("machine", scene, o.picture, o.machine, nullptr);
-    LoadWatch watch(plan, o.machine, Machine::stage_link_depth);
+    LoadWatch watch(plan, o.machine);
     RunResult result;
     const Interruptible interruptible(*machine);
     if (!load(*machine, plan, watch, o, result)) return exit_comparison;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 #include "model/machine/message.hpp"
 #include "model/machine/stall.hpp"
@@ -75,9 +76,12 @@ class Planner {
         Layout& layout = plan_.layout;
         layout.width = scene.frame.width;
         layout.height = scene.frame.height;
+        layout.lanes = std::min(machine.feed_lanes, layout.height);
         plan_.units.resize(layout.units());
         plan_.links.resize(layout.links());
+        plan_.lanes.resize(std::size_t(layout.lanes));
         plan_.rows.resize(std::size_t(layout.height));
+        lanes_.resize(std::size_t(layout.lanes));
         // One place more per row: entries at `last + 1` may be past its end.
         const std::size_t cells = std::size_t(layout.width + 1) * std::size_t(layout.height);
         voxels_begin_.resize(cells);
@@ -89,17 +93,12 @@ class Planner {
     LoadPlan run() {
         plan_.voxel_cycles = costs_.load_voxel(picture_.hit);
         broadcast(Kind::setup, 0, bits_.setup(scene_.sources.size()));
-        std::int64_t object = -1;
-        for (Polygon polygon : scene_.polygons) {
-            if (!clip_to_cube(polygon, scene_.frame.cube(), arithmetic_)) {
-                work_ += costs_.geometry_polygon;
-                continue;
-            }
-            if (std::int64_t(polygon.object) != object) {
-                object = polygon.object;
-                broadcast(Kind::features, polygon.object, bits_.features);
-            }
-            load(polygon);
+        const std::vector<Polygon>& polygons = scene_.polygons;
+        for (std::size_t begin = 0; begin < polygons.size();) {
+            std::size_t end = begin;
+            while (end < polygons.size() && polygons[end].object == polygons[begin].object) ++end;
+            load_object(begin, end);
+            begin = end;
         }
         broadcast(Kind::end_of_scene, 0, bits_.end_of_scene);
         add_up_rows();
@@ -107,62 +106,144 @@ class Planner {
     }
 
   private:
-    std::uint64_t cycles(int bits) const { return std::uint64_t(link_cycles(bits, machine_.link_bits)); }
+    /// State of a lane.
+    struct Lane {
+        std::uint64_t work = 1;    ///< cycles of geometry for its next message
+        std::int64_t object = -1;  ///< whose features it has sent
+        bool takes_part = false;   ///< in the object at hand
+        std::uint64_t broadcasts = 0;
+        std::uint64_t broadcast_cycles = 0;  ///< on links of rows
+    };
+    /// A polygon's part inside the cube, and all its trapezes with their corners' intensities.
+    struct Pieces {
+        Polygon polygon;
+        std::vector<Trapeze> trapezes;
+        std::vector<CornerIntensities> intensities;
+    };
+
+    std::uint64_t feed_cycles(int bits) const { return std::uint64_t(link_cycles(bits, machine_.feed_bits)); }
+    std::uint64_t array_cycles(int bits) const {
+        return std::uint64_t(link_cycles(bits, machine_.link_bits));
+    }
     Need& unit(std::size_t index) { return plan_.units[index]; }
     Need& link(std::size_t index) { return plan_.links[index]; }
+    Lane& lane_state(int lane) { return lanes_[std::size_t(lane)]; }
+    LanePlan& lane_plan(int lane) { return plan_.lanes[std::size_t(lane)]; }
 
-    void put_out(const LoadItem& item, int bits) {
-        plan_.polygons.push_back(digest_of(item));
-        plan_.geometry_work.push_back(std::uint32_t(work_));
-        unit(Layout::geometry).add(1, work_);
-        link(Layout::polygons).add(1, cycles(bits));
-        work_ = 1;
+    /// Whether a lane must look into a polygon. The only lane has all rows and does not ask.
+    bool wants(int lane, const Polygon& polygon) const {
+        const Layout& layout = plan_.layout;
+        return layout.lanes == 1 ||
+               may_touch_rows(polygon, {layout.first_row(lane), layout.last_row(lane)}, arithmetic_);
     }
 
-    /// Sends a message to every unit and over every link.
+    /// Loads the polygons [begin, end) of one object into all lanes. A lane passes over an object that does
+    /// not touch its rows at once, over polygons of other objects one by one.
+    void load_object(std::size_t begin, std::size_t end) {
+        for (int lane = 0; lane < plan_.layout.lanes; ++lane) {
+            Lane& state = lane_state(lane);
+            state.takes_part = false;
+            for (std::size_t i = begin; i < end && !state.takes_part; ++i)
+                state.takes_part = wants(lane, scene_.polygons[i]);
+            if (!state.takes_part) state.work += costs_.geometry_skip;
+        }
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::optional<Pieces> pieces = pieces_of(scene_.polygons[i]);
+            for (int lane = 0; lane < plan_.layout.lanes; ++lane) {
+                Lane& state = lane_state(lane);
+                if (!state.takes_part) continue;
+                if (!wants(lane, scene_.polygons[i])) {
+                    state.work += costs_.geometry_skip;
+                } else if (!pieces) {
+                    state.work += costs_.geometry_polygon;
+                } else {
+                    load(lane, *pieces);
+                }
+            }
+        }
+    }
+
+    /// Nothing if the polygon lies outside the cube.
+    std::optional<Pieces> pieces_of(Polygon polygon) {
+        if (!clip_to_cube(polygon, scene_.frame.cube(), arithmetic_)) return std::nullopt;
+        Pieces pieces{std::move(polygon), {}, {}};
+        pieces.trapezes = precompute(pieces.polygon, arithmetic_, plan_.layout.width, plan_.layout.height);
+        for (const Trapeze& trapeze : pieces.trapezes) {
+            pieces.intensities.push_back(picture_.display == Display::gouraud
+                                             ? shade_corners(trapeze, scene_, arithmetic_)
+                                             : CornerIntensities{});
+        }
+        ++plan_.counts.polygons;
+        plan_.counts.trapezes += pieces.trapezes.size();
+        return pieces;
+    }
+
+    void put_out(int lane, const LoadItem& item, int bits) {
+        Lane& state = lane_state(lane);
+        lane_plan(lane).polygons.push_back(digest_of(item));
+        lane_plan(lane).geometry_work.push_back(std::uint32_t(state.work));
+        unit(plan_.layout.geometry(lane)).add(1, state.work);
+        link(plan_.layout.polygons(lane)).add(1, feed_cycles(bits));
+        state.work = 1;
+    }
+
     void broadcast(Kind kind, std::uint32_t object, int bits) {
+        for (int lane = 0; lane < plan_.layout.lanes; ++lane) broadcast(lane, kind, object, bits);
+    }
+
+    /// Sends a message to every unit and over every link of a lane.
+    void broadcast(int lane, Kind kind, std::uint32_t object, int bits) {
+        const Layout& layout = plan_.layout;
         LoadItem item;
         item.kind = kind;
         item.object = object;
-        put_out(item, bits);
+        put_out(lane, item, bits);
         const std::uint64_t digest = digest_of(item);
-        unit(Layout::precomputation).add(1, 0);
-        link(Layout::trapezes).add(1, cycles(bits));
-        plan_.trapezes.push_back(digest);
-        for (int y = 0; y < plan_.layout.height; ++y) {
-            unit(plan_.layout.distributor(y)).add(1, costs_.distribution_pass);
-            if (y + 1 < plan_.layout.height) link(plan_.layout.down(y)).add(1, cycles(bits));
-            link(plan_.layout.row(y)).add(1, cycles(bits));
+        unit(layout.precomputation(lane)).add(1, 0);
+        link(layout.trapezes(lane)).add(1, feed_cycles(bits));
+        lane_plan(lane).trapezes.push_back(digest);
+        for (int y = layout.first_row(lane); y <= layout.last_row(lane); ++y) {
+            unit(layout.distributor(y)).add(1, costs_.distribution_pass);
+            if (y < layout.last_row(lane)) link(layout.down(y)).add(1, feed_cycles(bits));
+            link(layout.row(y)).add(1, array_cycles(bits));
             plan_.rows[std::size_t(y)].push_back(digest);
         }
-        ++broadcasts_;
-        broadcast_cycles_ += cycles(bits);
+        ++lane_state(lane).broadcasts;
+        lane_state(lane).broadcast_cycles += array_cycles(bits);
     }
 
-    void load(const Polygon& polygon) {
-        ++plan_.counts.polygons;
+    void load(int lane, const Pieces& pieces) {
+        const Layout& layout = plan_.layout;
+        const Polygon& polygon = pieces.polygon;
+        Lane& state = lane_state(lane);
+        if (state.object != std::int64_t(polygon.object)) {
+            state.object = polygon.object;
+            broadcast(lane, Kind::features, polygon.object, bits_.features);
+        }
+        ++plan_.sent_polygons;
         LoadItem item;
         item.kind = Kind::polygon;
         item.polygon = polygon;
-        work_ += costs_.geometry_polygon;
+        state.work += costs_.geometry_polygon;
         const int bits = int(polygon.vertices.size()) * bits_.vertex + bits_.polygon;
-        put_out(item, bits);
-        unit(Layout::precomputation).add(1, 0);
-        const std::vector<Trapeze> trapezes =
-            precompute(polygon, arithmetic_, plan_.layout.width, plan_.layout.height);
-        if (trapezes.empty()) return;
-        share(trapezes[0]);
+        put_out(lane, item, bits);
+        unit(layout.precomputation(lane)).add(1, 0);
         item.kind = Kind::trapeze;
-        for (const Trapeze& trapeze : trapezes) {
-            ++plan_.counts.trapezes;
+        bool shared = false;
+        for (std::size_t i = 0; i < pieces.trapezes.size(); ++i) {
+            const Trapeze& trapeze = pieces.trapezes[i];
+            if (trapeze.rows.last < layout.first_row(lane) || trapeze.rows.first > layout.last_row(lane))
+                continue;
+            if (!shared) share(lane, trapeze);
+            shared = true;
+            ++plan_.sent_trapezes;
             item.trapeze = trapeze;
-            item.intensities = CornerIntensities{};
-            if (picture_.display == Display::gouraud)
-                item.intensities = shade_corners(trapeze, scene_, arithmetic_);
-            plan_.trapezes.push_back(digest_of(item));
-            unit(Layout::precomputation).cycles += costs_.precomputation_trapeze;
-            link(Layout::trapezes).add(1, cycles(bits_of(trapeze)));
-            distribute(item, 1 + costs_.geometry_polygon + cycles(bits) + costs_.precomputation_trapeze);
+            item.intensities = pieces.intensities[i];
+            lane_plan(lane).trapezes.push_back(digest_of(item));
+            unit(layout.precomputation(lane)).cycles += costs_.precomputation_trapeze;
+            link(layout.trapezes(lane)).add(1, feed_cycles(bits_of(trapeze)));
+            distribute(lane, item,
+                       1 + costs_.geometry_polygon + feed_cycles(bits) + costs_.precomputation_trapeze);
         }
     }
 
@@ -171,29 +252,30 @@ class Planner {
         return bits_.span + std::min(span.edge_count, bits_.span_edges) * bits_.edge;
     }
 
-    /// Passes what the trapezes of a polygon share down to the last row that needs it.
-    void share(const Surface& surface) {
+    /// Passes what the trapezes of a polygon share down to the last row of the lane that needs it.
+    void share(int lane, const Surface& surface) {
         LoadItem item;
         item.kind = Kind::surface;
         static_cast<Surface&>(item.trapeze) = surface;
-        plan_.trapezes.push_back(digest_of(item));
-        link(Layout::trapezes).add(1, cycles(bits_.surface));
+        lane_plan(lane).trapezes.push_back(digest_of(item));
         const Layout& layout = plan_.layout;
-        for (int y = 0; y < layout.height; ++y) {
-            if (y > 0) link(layout.down(y - 1)).add(1, cycles(bits_.surface));
+        const std::uint64_t on_link = feed_cycles(bits_.surface);
+        link(layout.trapezes(lane)).add(1, on_link);
+        for (int y = layout.first_row(lane); y <= layout.last_row(lane); ++y) {
+            if (y > layout.first_row(lane)) link(layout.down(y - 1)).add(1, on_link);
             unit(layout.distributor(y)).add(1, costs_.distribution_pass);
             if (surface.last_row <= y) break;
         }
     }
 
-    /// Passes a trapeze from the top row down to the last one that has a part of it. It leaves precomputation
-    /// in cycle `way` at the earliest.
-    void distribute(const LoadItem& item, std::uint64_t way) {
+    /// Passes a trapeze from the lane's first row down to the last one that has a part of it. It leaves
+    /// precomputation in cycle `way` at the earliest.
+    void distribute(int lane, const LoadItem& item, std::uint64_t way) {
         const Layout& layout = plan_.layout;
         const Trapeze& trapeze = item.trapeze;
-        const std::uint64_t on_link = cycles(bits_of(trapeze));
-        for (int y = 0; y < layout.height; ++y) {
-            if (y > 0) link(layout.down(y - 1)).add(1, on_link);
+        const std::uint64_t on_link = feed_cycles(bits_of(trapeze));
+        for (int y = layout.first_row(lane); y <= layout.last_row(lane); ++y) {
+            if (y > layout.first_row(lane)) link(layout.down(y - 1)).add(1, on_link);
             const bool cuts = y >= trapeze.rows.first;
             const std::uint64_t work = cuts ? costs_.distribution_span : costs_.distribution_pass;
             unit(layout.distributor(y)).add(1, work);
@@ -213,15 +295,16 @@ class Planner {
         item.kind = Kind::span;
         item.span = *span;
         plan_.rows[std::size_t(y)].push_back(digest_of(item));
-        const std::uint64_t on_link = cycles(bits_of(*span));
+        const std::uint64_t on_link = array_cycles(bits_of(*span));
         link(plan_.layout.row(y)).add(1, on_link);
         const std::size_t row = std::size_t(y) * std::size_t(plan_.layout.width + 1);
         ++voxels_begin_[row + std::size_t(span->x)];
         ++spans_end_[row + std::size_t(span->last) + 1];
         cycles_end_[row + std::size_t(span->last) + 1] += on_link;
         row_cycles_[std::size_t(y)] += on_link;
+        // It leaves a cell without waiting for its voxel there, so only the last one counts.
         way += std::uint64_t(span->last + 1) * on_link + std::uint64_t(span->x) * costs_.load_forward +
-               std::uint64_t(span->last - span->x + 1) * plan_.voxel_cycles;
+               std::uint64_t(span->last - span->x + 1) * costs_.load_advance + plan_.voxel_cycles;
         if (way > plan_.longest_way.cycles) {
             plan_.longest_way = {"the way of a span of polygon " + std::to_string(span->polygon) +
                                      " in row " + std::to_string(y),
@@ -233,24 +316,24 @@ class Planner {
     void add_up_rows() {
         const Layout& layout = plan_.layout;
         for (int y = 0; y < layout.height; ++y) {
+            const Lane& lane = lane_state(layout.lane_of(y));
             const std::size_t row = std::size_t(y) * std::size_t(layout.width + 1);
-            std::uint64_t reach = plan_.rows[std::size_t(y)].size() - broadcasts_;
+            std::uint64_t reach = plan_.rows[std::size_t(y)].size() - lane.broadcasts;
             std::uint64_t making = 0;
             std::uint64_t on_links = row_cycles_[std::size_t(y)];
             for (int x = 0; x < layout.width; ++x) {
                 const std::size_t at = row + std::size_t(x);
                 if (x > 0) {
                     on_links -= cycles_end_[at];
-                    link(layout.east(x - 1, y)).messages += reach - spans_end_[at];
-                    link(layout.east(x - 1, y)).cycles += on_links;
-                    link(layout.east(x - 1, y)).messages += broadcasts_;
-                    link(layout.east(x - 1, y)).cycles += broadcast_cycles_;
+                    link(layout.east(x - 1, y)).messages += reach - spans_end_[at] + lane.broadcasts;
+                    link(layout.east(x - 1, y)).cycles += on_links + lane.broadcast_cycles;
                 }
                 reach -= spans_end_[at];
                 making = making + voxels_begin_[at] - spans_end_[at];
                 Need& cell = unit(layout.cell(x, y));
-                cell.add(making, plan_.voxel_cycles);
-                cell.add(reach - making + broadcasts_, costs_.load_forward);
+                cell.add(making, costs_.load_advance);
+                cell.add(reach - making + lane.broadcasts, costs_.load_forward);
+                cell.making = making * plan_.voxel_cycles;
             }
         }
     }
@@ -262,13 +345,11 @@ class Planner {
     Arithmetic arithmetic_;
     MessageBits bits_;
     LoadPlan plan_;
+    std::vector<Lane> lanes_;
     std::vector<std::uint64_t> voxels_begin_;  ///< number of spans that begin in each cell
     std::vector<std::uint64_t> spans_end_;     ///< number of spans that end just before each cell
     std::vector<std::uint64_t> cycles_end_;    ///< their cycles on a link
     std::vector<std::uint64_t> row_cycles_;    ///< of all spans of a row on its first link
-    std::uint64_t work_ = 1;                   ///< cycles of geometry for its next message
-    std::uint64_t broadcasts_ = 0;
-    std::uint64_t broadcast_cycles_ = 0;
 };
 
 }  // namespace
@@ -306,11 +387,13 @@ LoadPlan plan_loading(const CellScene& scene, const PictureSettings& picture,
 
 LoadPlan::Bound LoadPlan::busiest() const {
     Bound most;
+    const auto larger = [&](std::uint64_t cycles) { return cycles > most.cycles; };
     for (std::size_t i = 0; i < units.size(); ++i) {
-        if (units[i].cycles > most.cycles) most = {layout.unit_name(i), units[i].cycles};
+        if (larger(units[i].cycles)) most = {layout.unit_name(i), units[i].cycles};
+        if (larger(units[i].making)) most = {"voxels of " + layout.unit_name(i), units[i].making};
     }
     for (std::size_t i = 0; i < links.size(); ++i) {
-        if (links[i].cycles > most.cycles) most = {layout.link_name(i), links[i].cycles};
+        if (larger(links[i].cycles)) most = {layout.link_name(i), links[i].cycles};
     }
     return most;
 }

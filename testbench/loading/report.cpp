@@ -16,6 +16,30 @@ constexpr std::array<const char*, 5> link_groups = {"polygons", "trapezes", "dow
 
 double share(double part, double whole) { return whole > 0 ? part / whole : 0.0; }
 
+/// Cells at their voxels, which they make while they look at messages.
+Json making(const Loading& l) {
+    const Layout& layout = l.plan.layout;
+    std::uint64_t spans = 0;
+    std::uint64_t sum = 0;
+    std::uint64_t most_kept = 0;
+    std::size_t busiest = layout.cell(0, 0);
+    for (std::size_t i = busiest; i < layout.units(); ++i) {
+        const UnitUse& use = l.watch.units()[i];
+        if (use.making > l.watch.units()[busiest].making) busiest = i;
+        spans += use.spans;
+        sum += use.making;
+        most_kept = std::max(most_kept, use.most_kept);
+    }
+    const double cycles = double(l.result.load_cycles);
+    const double cells = double(layout.units() - layout.cell(0, 0));
+    return {{"spans", spans},
+            {"busy_cycles", sum},
+            {"busy_share", share(double(sum), cells * cycles)},
+            {"busiest", layout.unit_name(busiest)},
+            {"busiest_share", share(double(l.watch.units()[busiest].making), cycles)},
+            {"most_kept", most_kept}};
+}
+
 /// One group of units: sums, and the busiest unit.
 Json stage(const Loading& l, UnitGroup group) {
     const Layout& layout = l.plan.layout;
@@ -31,6 +55,7 @@ Json stage(const Loading& l, UnitGroup group) {
         sum.busy_cycles += use.busy_cycles;
         sum.starved_cycles += use.starved_cycles;
         sum.blocked_cycles += use.blocked_cycles;
+        sum.queue_full += use.queue_full;
         for (std::size_t out = 0; out < sum.waits.size(); ++out) {
             sum.waits[out].full += use.waits[out].full;
             sum.waits[out].busy += use.waits[out].busy;
@@ -56,6 +81,10 @@ Json stage(const Loading& l, UnitGroup group) {
     } else {
         json["waits"] = {{"east", wait(sum.waits[0])}, {"down", wait(sum.waits[1])}};
     }
+    if (group == UnitGroup::cells) {
+        json["waits"]["queue_full"] = sum.queue_full;
+        json["voxels"] = making(l);
+    }
     return json;
 }
 
@@ -72,7 +101,7 @@ Json links(const Loading& l, LinkGroup group) {
     std::size_t fullest = 0;
     const std::vector<LinkUse>& uses = l.watch.links();
     for (std::size_t i = 0; i < layout.links(); ++i) {
-        if (layout.link_group(i) != group) continue;
+        if (layout.link_group(i) != group || layout.absent(i)) continue;
         if (count == 0 || uses[i].wire_cycles > uses[busiest].wire_cycles) busiest = i;
         if (count == 0 || uses[i].occupied_cycles > uses[fullest].occupied_cycles) fullest = i;
         ++count;
@@ -118,7 +147,8 @@ Column column(const Loading& l, int x) {
         if (y == 0) sum.last_of_first_row = use.last_arrival;
         sum.messages += use.delivered;
         sum.voxels += l.cells[cell - layout.cell(0, 0)]->voxels.size();
-        sum.busiest_cell = std::max(sum.busiest_cell, l.watch.units()[cell].busy_cycles);
+        const UnitUse& work = l.watch.units()[cell];
+        sum.busiest_cell = std::max({sum.busiest_cell, work.busy_cycles, work.making});
     }
     return sum;
 }
@@ -189,11 +219,11 @@ Json report(const Loading& l) {
                       {"per_voxel", share(cycles, double(r.storage.voxels))}};
     json["simulated_seconds"] = cycles / (l.machine.clock_mhz * 1e6);
     json["bound"] = bound(l);
-    json["items"] = {{"polygons", items.polygons},
-                     {"outside", l.scene.polygons.size() - items.polygons},
-                     {"trapezes", items.trapezes},
-                     {"spans", items.spans},
-                     {"voxels", r.storage.voxels}};
+    json["items"] = {
+        {"polygons", items.polygons},           {"outside", l.scene.polygons.size() - items.polygons},
+        {"trapezes", items.trapezes},           {"spans", items.spans},
+        {"voxels", r.storage.voxels},           {"sent_polygons", l.plan.sent_polygons},
+        {"sent_trapezes", l.plan.sent_trapezes}};
     json["messages"] = {{"sent", r.counters.loads_sent},
                         {"delivered", r.counters.loads_delivered},
                         {"hops", r.counters.load_hops}};
@@ -234,7 +264,7 @@ std::string rows_csv(const Loading& l) {
     for (int y = 0; y < layout.height; ++y) {
         const UnitUse& use = l.watch.units()[layout.distributor(y)];
         const LinkUse& east = l.watch.links()[layout.row(y)];
-        const LinkUse down = y + 1 < layout.height ? l.watch.links()[layout.down(y)] : LinkUse();
+        const LinkUse& down = l.watch.links()[layout.down(y)];  // all 0 where it is absent
         const std::uint64_t fields[] = {use.messages,       use.busy_cycles,   use.starved_cycles,
                                         use.blocked_cycles, use.waits[0].full, use.waits[0].busy,
                                         use.waits[1].full,  use.waits[1].busy, east.sent,
@@ -252,6 +282,7 @@ std::string links_csv(const Loading& l) {
         "link,group,x,y,messages,wire_cycles,needed_cycles,depth,peak,occupied_cycles,first_arrival,last_"
         "arrival\n";
     for (std::size_t i = 0; i < layout.links(); ++i) {
+        if (layout.absent(i)) continue;
         const LinkUse& use = l.watch.links()[i];
         const Layout::Place place = layout.link_place(i);
         text += layout.link_name(i) + "," + link_groups[std::size_t(layout.link_group(i))] + "," +

@@ -31,6 +31,12 @@ void add_stages(std::ostream& out, const Json& stages) {
             << std::left << std::setw(24) << s["busiest"].get<std::string>() << std::right << std::setw(7)
             << percent(s["busiest_share"]) << std::setw(9) << percent(s["starved_share"]) << std::setw(9)
             << percent(s["blocked_share"]) << '\n';
+        if (!s.contains("voxels")) continue;
+        const Json& v = s["voxels"];  // a cell makes them beside its other work
+        out << "  their voxels " << std::setw(8) << s["units"].dump() << std::setw(12) << v["spans"].dump()
+            << std::setw(9) << percent(v["busy_share"]) << "  " << std::left << std::setw(24)
+            << v["busiest"].get<std::string>() << std::right << std::setw(7) << percent(v["busiest_share"])
+            << "   at most " << v["most_kept"] << " spans in a cell\n";
     }
 }
 
@@ -57,6 +63,9 @@ void add_waits(std::ostream& out, const Json& stages) {
     };
     for (const auto& [name, s] : stages.items()) {
         const Json& w = s["waits"];
+        if (w.contains("queue_full") && w["queue_full"] > 0)
+            out << std::left << std::setw(29) << name + ", no place in them" << std::right << std::setw(15)
+                << w["queue_full"].dump() << '\n';
         if (w.contains("output_full")) {
             line(name, w);
         } else {

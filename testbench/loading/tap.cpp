@@ -1,5 +1,7 @@
 #include "testbench/loading/tap.hpp"
 
+#include <stdexcept>
+
 namespace raycell::loading {
 
 void MachineTap::LinkTap::sent(const Link&, int, const Message& message, int cycles, Cycle now) {
@@ -18,11 +20,17 @@ void MachineTap::listen(Link& link, std::size_t index) {
 
 MachineTap::MachineTap(Machine& machine, const Layout& layout, LoadListener& listener) : listener_(listener) {
     taps_.reserve(layout.links());  // links keep pointers to their taps
-    listen(machine.polygon_link(), Layout::polygons);
-    listen(machine.trapeze_link(), Layout::trapezes);
+    if (machine.lanes().size() != std::size_t(layout.lanes))
+        throw std::logic_error("other lanes than the layout's");
+    for (int lane = 0; lane < layout.lanes; ++lane) {
+        listen(machine.lanes()[std::size_t(lane)]->polygons, layout.polygons(lane));
+        listen(machine.lanes()[std::size_t(lane)]->trapezes, layout.trapezes(lane));
+    }
+    std::size_t downs = 0;  // the machine has no links between lanes
     for (int y = 0; y < layout.height; ++y) {
         listen(*machine.row_links()[std::size_t(y)], layout.row(y));
-        if (y + 1 < layout.height) listen(*machine.distribution().links()[std::size_t(y)], layout.down(y));
+        if (!layout.absent(layout.down(y)))
+            listen(*machine.distribution().links().at(downs++), layout.down(y));
     }
     Array& array = machine.array();
     for (std::size_t i = 0; i < array.links().size(); ++i) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "model/machine/feed_bits.hpp"
+
 namespace raycell::loading {
 namespace {
 
@@ -29,9 +31,10 @@ std::string words_of(const LoadItem& item) {
 
 }  // namespace
 
-LoadWatch::LoadWatch(const LoadPlan& plan, const MachineSettings& machine, int stage_link_depth)
+LoadWatch::LoadWatch(const LoadPlan& plan, const MachineSettings& machine)
     : plan_(plan),
       layout_(plan.layout),
+      machine_(machine),
       costs_(machine.costs),
       links_(layout_.links()),
       units_(layout_.units()),
@@ -39,7 +42,8 @@ LoadWatch::LoadWatch(const LoadPlan& plan, const MachineSettings& machine, int s
       use_(layout_.units()),
       dropped_(std::size_t(layout_.height)) {
     for (LinkUse& use : link_use_) use.depth = machine.buffer_depth;
-    link_use_[Layout::polygons].depth = link_use_[Layout::trapezes].depth = stage_link_depth;
+    for (int lane = 0; lane < layout_.lanes; ++lane)
+        link_use_[layout_.polygons(lane)].depth = link_use_[layout_.trapezes(lane)].depth = feed_link_depth;
 }
 
 std::string LoadWatch::at(std::size_t link, Cycle now) const {
@@ -50,6 +54,11 @@ std::string LoadWatch::in(std::size_t unit, Cycle now) const {
     return layout_.unit_name(unit) + " in cycle " + std::to_string(now) + ": ";
 }
 
+bool LoadWatch::makes_voxel(std::size_t unit, const LoadItem& item) const {
+    return layout_.unit_group(unit) == UnitGroup::cells && item.kind == Kind::span &&
+           item.span.x == layout_.unit_place(unit).x;
+}
+
 std::uint32_t LoadWatch::work_at(std::size_t unit, const LoadItem& item) const {
     const Layout::Place place = layout_.unit_place(unit);
     switch (layout_.unit_group(unit)) {
@@ -57,10 +66,8 @@ std::uint32_t LoadWatch::work_at(std::size_t unit, const LoadItem& item) const {
             const bool cuts = item.kind == Kind::trapeze && place.y >= item.trapeze.rows.first;
             return cuts ? costs_.distribution_span : costs_.distribution_pass;
         }
-        case UnitGroup::cells: {
-            const bool makes_voxel = item.kind == Kind::span && item.span.x == place.x;
-            return makes_voxel ? plan_.voxel_cycles : costs_.load_forward;
-        }
+        case UnitGroup::cells:
+            return makes_voxel(unit, item) ? costs_.load_advance : costs_.load_forward;
         case UnitGroup::geometry:
         case UnitGroup::precomputation:
             break;
@@ -72,14 +79,16 @@ void LoadWatch::sent(std::size_t link, const LoadItem& item, int cycles, Cycle n
     LinkState& state = links_[link];
     LinkUse& use = link_use_[link];
     std::uint64_t ticket = 0;
-    switch (layout_.unit_group(layout_.source_of(link))) {
+    const std::size_t source = layout_.source_of(link);
+    const int lane = layout_.unit_lane(source);
+    switch (layout_.unit_group(source)) {
         case UnitGroup::geometry:
-            compare(link, plan_.polygons, item);
-            ticket = leave_geometry(now);
+            compare(link, plan_.lanes[std::size_t(lane)].polygons, item);
+            ticket = leave_geometry(lane, now);
             break;
         case UnitGroup::precomputation:
-            compare(link, plan_.trapezes, item);
-            ticket = leave_precomputation(item, now);
+            compare(link, plan_.lanes[std::size_t(lane)].trapezes, item);
+            ticket = leave_precomputation(lane, item, now);
             break;
         case UnitGroup::distributors:
             ticket = leave_distributor(link, item, now);
@@ -92,7 +101,8 @@ void LoadWatch::sent(std::size_t link, const LoadItem& item, int cycles, Cycle n
         order_.add(at(link, now) + words_of(item) + " goes after a later message");
     state.next_ticket = ticket + 1;
     const Cycle arrival = now + Cycle(cycles);
-    state.held.push_back({&item, ticket, now, arrival, work_at(layout_.sink_of(link), item)});
+    const std::size_t sink = layout_.sink_of(link);
+    state.held.push_back({&item, ticket, now, arrival, work_at(sink, item), makes_voxel(sink, item)});
     state.wires_free = arrival;
     ++use.sent;
     use.wire_cycles += std::uint64_t(cycles);
@@ -130,29 +140,33 @@ void LoadWatch::leave(std::size_t link, std::size_t output, Cycle ready, Cycle n
     wait.busy += now - ready - full;
 }
 
-std::uint64_t LoadWatch::leave_geometry(Cycle now) {
-    UnitState& unit = units_[Layout::geometry];
-    UnitUse& use = use_[Layout::geometry];
+std::uint64_t LoadWatch::leave_geometry(int lane, Cycle now) {
+    const std::size_t index = layout_.geometry(lane);
+    UnitState& unit = units_[index];
+    UnitUse& use = use_[index];
+    const std::vector<std::uint32_t>& works = plan_.lanes[std::size_t(lane)].geometry_work;
     const std::uint64_t place = use.messages++;
-    const std::uint32_t work = place < plan_.geometry_work.size() ? plan_.geometry_work[place] : 0;
+    const std::uint32_t work = place < works.size() ? works[place] : 0;
     const Cycle ready = unit.begin + work;
     use.busy_cycles += work;
-    leave(Layout::polygons, 0, ready, now);
+    leave(layout_.polygons(lane), 0, ready, now);
     if (now > ready) use.blocked_cycles += now - ready;
     unit.begin = now + 1;
     return place;
 }
 
-std::uint64_t LoadWatch::leave_precomputation(const LoadItem& item, Cycle now) {
-    UnitState& unit = units_[Layout::precomputation];
-    UnitUse& use = use_[Layout::precomputation];
+std::uint64_t LoadWatch::leave_precomputation(int lane, const LoadItem& item, Cycle now) {
+    const std::size_t index = layout_.precomputation(lane);
+    const std::size_t link = layout_.trapezes(lane);
+    UnitState& unit = units_[index];
+    UnitUse& use = use_[index];
     const bool trapeze = item.kind == Kind::trapeze;
     const Cycle ready = unit.begin + (trapeze ? costs_.precomputation_trapeze : 1);
     if (trapeze) use.busy_cycles += costs_.precomputation_trapeze;
-    leave(Layout::trapezes, 0, ready, now);
+    leave(link, 0, ready, now);
     if (now > ready) use.blocked_cycles += now - ready;
     unit.begin = unit.last_send = now + 1;
-    return link_use_[Layout::trapezes].sent;
+    return link_use_[link].sent;
 }
 
 void LoadWatch::begin_work(std::size_t index, const Held& head) {
@@ -193,7 +207,7 @@ std::uint64_t LoadWatch::leave_cell(std::size_t link, const LoadItem& item, Cycl
     if (unit.held != &item || unit.taken != now) {
         order_.add(at(link, now) + words_of(item) + " leaves a cell that has not taken it in this cycle");
     }
-    leave(link, 0, unit.ready, now);
+    leave(link, 0, std::max(unit.ready, unit.room), now);
     if (now > unit.ready) use_[index].blocked_cycles += now - unit.ready;
     unit.held = nullptr;
     return unit.ticket;
@@ -214,7 +228,7 @@ void LoadWatch::popped(std::size_t link, const LoadItem& item, Cycle now) {
         case UnitGroup::geometry:
             break;  // reads no link
         case UnitGroup::precomputation:
-            take_into_precomputation(held, now);
+            take_into_precomputation(sink, held, now);
             break;
         case UnitGroup::distributors:
             take_into_distributor(sink, held, now);
@@ -232,15 +246,14 @@ void LoadWatch::popped(std::size_t link, const LoadItem& item, Cycle now) {
     use.occupied_cycles += now - held.sent;
 }
 
-void LoadWatch::take_into_precomputation(const Held& held, Cycle now) {
-    UnitState& unit = units_[Layout::precomputation];
-    UnitUse& use = use_[Layout::precomputation];
+void LoadWatch::take_into_precomputation(std::size_t index, const Held& held, Cycle now) {
+    UnitState& unit = units_[index];
+    UnitUse& use = use_[index];
     // A polygon without a trapeze takes only the cycle in which it was read.
     const Cycle free = unit.taken == never ? unit.begin : std::max(unit.last_send, unit.taken + 1);
     const Cycle first = std::max(free, held.arrival);
     if (now != first) {
-        promptness_.add(in(Layout::precomputation, now) + "takes a message; it could in cycle " +
-                        std::to_string(first));
+        promptness_.add(in(index, now) + "takes a message; it could in cycle " + std::to_string(first));
     }
     if (now > free) use.starved_cycles += now - free;
     ++use.messages;
@@ -266,13 +279,17 @@ void LoadWatch::take_into_cell(std::size_t index, const Held& held, Cycle now) {
     const LoadItem& item = *held.item;
     if (unit.held) conservation_.add(in(index, now) + "has not passed on what it took before");
     begin_work(index, held);
+    unit.room = 0;
+    if (held.makes_voxel) keep_span(index, now);
     const bool drops = item.kind == Kind::span ? item.span.last == place.x : place.x + 1 == layout_.width;
     if (drops) {
         ++dropped_[std::size_t(place.y)];
-        if (now != unit.ready) {
+        const Cycle first = std::max(unit.ready, unit.room);
+        if (now != first) {
             promptness_.add(in(index, now) + "is done with a message; it could be in cycle " +
-                            std::to_string(unit.ready));
+                            std::to_string(first));
         }
+        if (now > unit.ready) use_[index].blocked_cycles += now - unit.ready;
     } else {
         unit.held = &item;
     }
@@ -280,6 +297,22 @@ void LoadWatch::take_into_cell(std::size_t index, const Held& held, Cycle now) {
     unit.taken = now;
     unit.begin = now + 1;
     latch(index, item, now);
+}
+
+/// The span moves on once the cell has a place for it; its voxel is made after those before it.
+void LoadWatch::keep_span(std::size_t index, Cycle now) {
+    UnitState& unit = units_[index];
+    UnitUse& use = use_[index];
+    const Cycle each = plan_.voxel_cycles;
+    if (machine_.load_queue > 0) {
+        const Cycle others = Cycle(machine_.load_queue - 1) * each;  // what may be left to make
+        unit.room = unit.made > others ? unit.made - others : 0;
+    }
+    if (unit.room > unit.ready) use.queue_full += std::min(unit.room, now) - std::min(unit.ready, now);
+    unit.made = std::max(unit.made, now) + each;
+    use.making += each;
+    ++use.spans;
+    use.most_kept = std::max(use.most_kept, (unit.made - now + each - 1) / each);
 }
 
 void LoadWatch::latch(std::size_t index, const LoadItem& item, Cycle now) {
@@ -303,6 +336,7 @@ void LoadWatch::latch(std::size_t index, const LoadItem& item, Cycle now) {
             break;
         case Kind::end_of_scene:
             unit.finished = true;
+            loaded_ = std::max({loaded_, now, unit.made});
             break;
         case Kind::polygon:
         case Kind::surface:
@@ -312,30 +346,46 @@ void LoadWatch::latch(std::size_t index, const LoadItem& item, Cycle now) {
     }
 }
 
+void LoadWatch::finish_link(std::size_t index) {
+    const LinkUse& use = link_use_[index];
+    const Need& need = plan_.links[index];
+    const std::string name = "link " + layout_.link_name(index) + ": ";
+    if (use.sent != use.delivered) {
+        conservation_.add(name + std::to_string(use.sent) + " sent, " + std::to_string(use.delivered) +
+                          " delivered");
+    }
+    if (use.sent != need.messages) {
+        content_.add(name + std::to_string(use.sent) + " messages, untimed loading sends " +
+                     std::to_string(need.messages));
+    } else if (use.wire_cycles < need.cycles || (machine_.stall == 0 && use.wire_cycles > need.cycles)) {
+        content_.add(name + std::to_string(use.wire_cycles) + " cycles on the wires, its messages take " +
+                     std::to_string(need.cycles));
+    }
+}
+
+void LoadWatch::finish_unit(std::size_t index) {
+    const Need& need = plan_.units[index];
+    const UnitUse& use = use_[index];
+    const std::string name = layout_.unit_name(index) + ": ";
+    if (use.messages != need.messages || use.busy_cycles != need.cycles) {
+        content_.add(name + std::to_string(use.messages) + " messages, " + std::to_string(use.busy_cycles) +
+                     " cycles of work; untimed loading makes them " + std::to_string(need.messages) +
+                     " and " + std::to_string(need.cycles));
+    }
+    if (use.making != need.making) {
+        content_.add(name + std::to_string(use.making) + " cycles of making voxels, untimed loading takes " +
+                     std::to_string(need.making));
+    }
+    if (layout_.unit_group(index) != UnitGroup::cells) return;
+    if (units_[index].held) conservation_.add(name + "has not passed on what it took last");
+    if (!units_[index].finished) order_.add(name + "has seen no end-of-scene mark");
+}
+
 void LoadWatch::finish() {
     for (std::size_t i = 0; i < layout_.links(); ++i) {
-        const LinkUse& use = link_use_[i];
-        if (use.sent != use.delivered) {
-            conservation_.add("link " + layout_.link_name(i) + ": " + std::to_string(use.sent) + " sent, " +
-                              std::to_string(use.delivered) + " delivered");
-        }
-        if (use.sent != plan_.links[i].messages) {
-            content_.add("link " + layout_.link_name(i) + ": " + std::to_string(use.sent) +
-                         " messages, untimed loading sends " + std::to_string(plan_.links[i].messages));
-        }
+        if (!layout_.absent(i)) finish_link(i);
     }
-    for (std::size_t i = 0; i < layout_.units(); ++i) {
-        const Need& need = plan_.units[i];
-        const UnitUse& use = use_[i];
-        if (use.messages != need.messages || use.busy_cycles != need.cycles) {
-            content_.add(layout_.unit_name(i) + ": " + std::to_string(use.messages) + " messages, " +
-                         std::to_string(use.busy_cycles) + " cycles of work; untimed loading makes them " +
-                         std::to_string(need.messages) + " and " + std::to_string(need.cycles));
-        }
-        if (layout_.unit_group(i) != UnitGroup::cells) continue;
-        if (units_[i].held) conservation_.add(layout_.unit_name(i) + ": has not passed on what it took last");
-        if (!units_[i].finished) order_.add(layout_.unit_name(i) + ": has seen no end-of-scene mark");
-    }
+    for (std::size_t i = 0; i < layout_.units(); ++i) finish_unit(i);
     for (int y = 0; y < layout_.height; ++y) {
         const std::uint64_t sent = link_use_[layout_.row(y)].sent;
         const std::uint64_t dropped = dropped_[std::size_t(y)];
@@ -344,6 +394,12 @@ void LoadWatch::finish() {
                               " messages sent into it, " + std::to_string(dropped) + " dropped at their end");
         }
     }
+}
+
+void LoadWatch::finish_at(Cycle load_cycles) {
+    if (load_cycles == loaded_) return;
+    promptness_.add("loading is over in cycle " + std::to_string(load_cycles) +
+                    "; its last cell is loaded in cycle " + std::to_string(loaded_));
 }
 
 }  // namespace raycell::loading

@@ -18,13 +18,18 @@ struct OutputWait {
 };
 
 /// Where a unit's cycles went, from the start of loading to its last message. A distributor sends to the east
-/// and down at the same time, so its waits may overlap; `blocked` counts each cycle once.
+/// and down at the same time, so its waits may overlap; `blocked` counts each cycle once. A cell looks at
+/// messages and makes voxels at the same time: all but `making` is about the messages.
 struct UnitUse {
     std::uint64_t messages = 0;  ///< taken; geometry: sent
     std::uint64_t busy_cycles = 0;
     std::uint64_t starved_cycles = 0;  ///< no message has arrived in the input buffer
     std::uint64_t blocked_cycles = 0;
     std::array<OutputWait, 2> waits;  ///< the only output, or east; down
+    std::uint64_t queue_full = 0;     ///< of `blocked`, in a cell: it keeps as many spans as it may
+    std::uint64_t spans = 0;          ///< kept by a cell until their voxels were made
+    std::uint64_t making = 0;         ///< cycles in which a cell made voxels
+    std::uint64_t most_kept = 0;      ///< spans at a time, the one at work included
 };
 
 struct LinkUse {
@@ -48,14 +53,15 @@ class LoadListener {
 
 class LoadWatch : public LoadListener {
   public:
-    /// `plan` and `machine` must outlive it. `stage_link_depth`: buffer depth of the two links before the
-    /// distributors.
-    LoadWatch(const LoadPlan& plan, const MachineSettings& machine, int stage_link_depth);
+    /// `plan` and `machine` must outlive it.
+    LoadWatch(const LoadPlan& plan, const MachineSettings& machine);
 
     void sent(std::size_t link, const LoadItem& item, int cycles, Cycle now) override;
     void popped(std::size_t link, const LoadItem& item, Cycle now) override;
     /// Call after a run that was not stopped: checks that all messages arrived and none is left.
     void finish();
+    /// Call after finish(): checks that loading was over in the cycle in which its last cell was loaded.
+    void finish_at(Cycle load_cycles);
 
     const std::vector<UnitUse>& units() const { return use_; }
     const std::vector<LinkUse>& links() const { return link_use_; }
@@ -64,12 +70,13 @@ class LoadWatch : public LoadListener {
     /// viewer come first, a cell knows the features of every span's object, nothing follows the end-of-scene
     /// mark.
     const Faults& order() const { return order_; }
-    /// Every unit and link handles the messages of the plan, no more and no fewer; geometry, precomputation
-    /// and distributors send them in its order and with its bits.
+    /// Every unit and link handles the messages of the plan, no more and no fewer, in as many cycles;
+    /// geometry, precomputation and distributors send them in its order and with its bits.
     const Faults& content() const { return content_; }
     /// Every sent message arrives, and every cell drops the messages that end in it.
     const Faults& conservation() const { return conservation_; }
-    /// A message moves in the first cycle in which its unit is done, the wires are free and there is room.
+    /// A message moves in the first cycle in which its unit is done, the wires are free and there is room. A
+    /// cell is loaded when the end-of-scene mark has passed and its last voxel is made.
     const Faults& promptness() const { return promptness_; }
 
   private:
@@ -79,6 +86,7 @@ class LoadWatch : public LoadListener {
         Cycle sent;
         Cycle arrival;
         std::uint32_t work;  ///< cycles of work at the far end
+        bool makes_voxel;    ///< there; asked early, because the cell alters a span before it takes it
     };
     struct LinkState {
         std::vector<Held> held;   ///< oldest first
@@ -96,6 +104,8 @@ class LoadWatch : public LoadListener {
         const LoadItem* held = nullptr;  ///< cell: taken in cycle `taken`, to be sent in the same cycle
         std::uint64_t ticket = 0;
         Cycle taken = never;
+        Cycle room = 0;         ///< cell: first cycle in which it could keep the span at hand
+        Cycle made = 0;         ///< cell: cycle in which all voxels of the spans kept are made
         bool set_up = false;    ///< cell: sources and viewer are known
         bool finished = false;  ///< cell: has seen the end-of-scene mark
         std::uint32_t object = no_object;
@@ -103,23 +113,28 @@ class LoadWatch : public LoadListener {
     static constexpr std::uint32_t no_object = ~std::uint32_t(0);
 
     // Each returns the message's ticket.
-    std::uint64_t leave_geometry(Cycle now);
-    std::uint64_t leave_precomputation(const LoadItem& item, Cycle now);
+    std::uint64_t leave_geometry(int lane, Cycle now);
+    std::uint64_t leave_precomputation(int lane, const LoadItem& item, Cycle now);
     std::uint64_t leave_distributor(std::size_t link, const LoadItem& item, Cycle now);
     std::uint64_t leave_cell(std::size_t link, const LoadItem& item, Cycle now);
     void leave(std::size_t link, std::size_t output, Cycle ready, Cycle now);
     void begin_work(std::size_t unit, const Held& head);
     void compare(std::size_t link, const std::vector<std::uint64_t>& planned, const LoadItem& item);
-    void take_into_precomputation(const Held& held, Cycle now);
+    void take_into_precomputation(std::size_t unit, const Held& held, Cycle now);
     void take_into_distributor(std::size_t unit, const Held& held, Cycle now);
     void take_into_cell(std::size_t unit, const Held& held, Cycle now);
+    void keep_span(std::size_t unit, Cycle now);
     void latch(std::size_t unit, const LoadItem& item, Cycle now);
+    void finish_link(std::size_t link);
+    void finish_unit(std::size_t unit);
+    bool makes_voxel(std::size_t unit, const LoadItem& item) const;
     std::uint32_t work_at(std::size_t unit, const LoadItem& item) const;
     std::string at(std::size_t link, Cycle now) const;
     std::string in(std::size_t unit, Cycle now) const;
 
     const LoadPlan& plan_;
     const Layout& layout_;
+    const MachineSettings& machine_;
     const CostTable& costs_;
     std::vector<LinkState> links_;
     std::vector<UnitState> units_;
@@ -130,6 +145,7 @@ class LoadWatch : public LoadListener {
     Faults content_;
     Faults conservation_;
     Faults promptness_;
+    Cycle loaded_ = 0;  ///< cycle in which the last cell that has seen the mark was loaded
 };
 
 }  // namespace raycell::loading

@@ -29,11 +29,14 @@ class ForwardTrial : public MicroTrial {
 class AdvanceTrial : public SpanTrial {
   public:
     explicit AdvanceTrial(const MicroSetting& s, HitTest rung, Normals normals)
-        : SpanTrial(s, advance_program(s, rung, normals), {}, rung, normals) {}
+        : SpanTrial(s, advance_program(s, rung, normals),
+                    rung == HitTest::edge ? MicroCost{"load_advance"} : MicroCost{}, rung, normals) {}
 
   private:
     void draw(MicroRandom& random) override {
         draw_span(random);
+        put("x", span_.x);
+        put("last", span_.last);
         put_all();
     }
     void compare() override { expect_advanced(); }
@@ -255,7 +258,6 @@ class VoxelTrial : public SpanTrial {
         const bool made = make(store);
         expect("made", take("made"), made);
         if (made) expect_voxel(store);
-        expect_advanced();
     }
     void expect_mask(const Voxel& voxel) const {
         const char* const ends[] = {"mask u window from", "mask u window to", "mask v window from",

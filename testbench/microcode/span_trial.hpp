@@ -121,8 +121,6 @@ class SpanTrial : public MicroTrial {
         put("dn", span_.dn);
     }
     void put_all() {
-        put("x", span_.x);
-        put("last", span_.last);
         put_axis();
         if (spans_.settings.hit == HitTest::depth) {
             put_depth();

@@ -36,10 +36,19 @@ Bytes scene_bytes(const CellScene& scene) {
     bytes.put_all(scene.objects);
     bytes.put_all(scene.sources);
     bytes.put(scene.beyond);
+    bytes.put(scene.polygons.size());
+    for (const Polygon& polygon : scene.polygons) {
+        bytes.put(polygon.id);
+        bytes.put(polygon.object);
+        bytes.put(polygon.plane);
+        bytes.put(polygon.drop);
+        bytes.put(polygon.normal);
+        bytes.put(polygon.slack);
+        bytes.put_all(polygon.vertices);
+    }
     return bytes.take();
 }
 
-/// Everything that cells, distributors and links use. Only geometry needs polygons, and it runs on rank 0.
 CellScene scene_of(ByteReader& bytes) {
     CellScene scene;
     scene.frame = bytes.get<Frame>();
@@ -47,6 +56,16 @@ CellScene scene_of(ByteReader& bytes) {
     scene.objects = bytes.get_all<Material>();
     scene.sources = bytes.get_all<Source>();
     scene.beyond = bytes.get<std::array<bool, 6>>();
+    scene.polygons.resize(bytes.get<std::size_t>());
+    for (Polygon& polygon : scene.polygons) {
+        polygon.id = bytes.get<std::uint32_t>();
+        polygon.object = bytes.get<std::uint32_t>();
+        polygon.plane = bytes.get<Plane>();
+        polygon.drop = bytes.get<int>();
+        polygon.normal = bytes.get<NormalField>();
+        polygon.slack = bytes.get<double>();
+        polygon.vertices = bytes.get_all<dvec3>();
+    }
     return scene;
 }
 

@@ -25,7 +25,7 @@ class RankRun {
     RankRun& operator=(const RankRun&) = delete;
 
     bool first() const;
-    /// Rank 0 reads the scene; the others get all of it but its polygons. If `read` throws, all ranks end,
+    /// Rank 0 reads the scene; the others get it from there. If `read` throws, all ranks end,
     /// and its message is printed once.
     CellScene share_scene(const std::function<CellScene()>& read);
     /// The exchange of the machine. Call once.

@@ -81,6 +81,8 @@ class Cell(Store, Loading):
     def wakes(self, now):
         """Cycles after `now` in which the cell may do something that it can't do yet."""
         times = [self.test_done, self.job_done, self.own_retry_at, self.load_done, now - now % EPOCH + EPOCH]
+        if self.phase == "load":
+            times.append(self.all_made - (self.S.option["load-queue"] - 1) * self.making())
         times += [link.wires_free for link in self.outputs.values()]
         for slot in self.slots:
             times += slot.retry_at

@@ -21,6 +21,7 @@ class Loading:
         # In the first column over a link of its own.
         self.load_input = self.inputs[WEST, 0] if WEST in self.outputs and self.x > 0 else InBuffer()
         self.loading, self.load_done = None, 0
+        self.all_made = 0                           # when the last of the voxels of the spans kept is made
         self.object = None                          # whose features have come last
 
     def load(self, now):
@@ -32,12 +33,15 @@ class Loading:
         makes = span and item.x1 == self.x
         if self.loading is not item:
             self.loading = item
-            self.load_done = now + self.S.cost("load_" + self.S.option["hit"] if makes else "load_forward")
+            self.load_done = now + self.S.cost("load_advance" if makes else "load_forward")
             self.moved += 1
         ends = (item.last if span else self.S.width - 1) == self.x
-        if now < self.load_done or not (ends or self.outputs[EAST].can_send(0, now)):
+        if now < self.load_done or makes and not self.has_room(now):
+            return
+        if not (ends or self.outputs[EAST].can_send(0, now)):
             return
         if makes:
+            self.all_made = max(self.all_made, now) + self.making()
             store_voxel(self.S, self.voxels, item, self.object)
             if not ends:
                 item.advance()
@@ -49,3 +53,10 @@ class Loading:
         self.moved += 1
         if not ends:
             self.send(EAST, 0, item, now)
+
+    def making(self):
+        return self.S.cost("load_" + self.S.option["hit"])
+
+    def has_room(self, now):
+        most = self.S.option["load-queue"]
+        return most == 0 or now >= self.all_made - (most - 1) * self.making()

@@ -59,6 +59,9 @@ Drawn draw(std::uint64_t seed) {
     const int least = std::max(waiting_generations(Context(lights, s)), 1);
     m.ray_store = random.whole(least, 16);
     if (random.chance(0.4)) m.ray_store = least;
+    m.feed_lanes = random.whole(1, 20);
+    m.feed_bits = random.whole(1, 300);
+    m.load_queue = random.chance(0.5) ? 0 : random.whole(1, 4);
     if (random.chance(0.25)) {  // no promise: it may get stuck, but if it ends, the picture is the same
         drawn.must_end = false;
         m.networks = Networks(random.whole(0, 3));

@@ -113,14 +113,14 @@ TEST(Knot, IsNotSeenInCongestionThatTheCycleLimitCut) {
 }
 
 TEST(Knot, ThatHasFormedIsSeenThoughTheCycleLimitCameFirst) {
-    // In the run of OfSharedBuffersIsARingOfBuffersAlone, other messages move until cycle 76469.
+    // In the run of OfSharedBuffersIsARingOfBuffersAlone, other messages move until cycle 53717.
     Stuck stuck("facing_mirrors", [](PictureSettings&, MachineSettings& m) {
         m.networks = Networks::shared;
-        m.max_cycles = 75500;
+        m.max_cycles = 52700;
     });
     EXPECT_EQ(name_of(stuck.result.verdict), std::string("deadlock"));
     ASSERT_TRUE(stuck.result.waits.deadlocked());
-    EXPECT_LE(stuck.result.knot_formed, 75500u);
+    EXPECT_LE(stuck.result.knot_formed, 52700u);
 }
 
 TEST(TimeOut, AlarmsInACellOfEveryKnotOfBuffersWhatIsProvedLocked) {

@@ -1,6 +1,8 @@
 // The checks of loading_tb: they pass on what the machine does and fail on faulty runs.
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "elaboration.hpp"
 #include "estimates.hpp"
@@ -41,7 +43,7 @@ class Recorder : public LoadListener {
 
 /// The recorded loading of a small machine, to be replayed to a watch as it was or altered.
 struct Recording {
-    Recording() {
+    explicit Recording(const MachineSettings& machine_settings = {}) : settings(machine_settings) {
         expect_first_elaboration();
         RandomPolygons random;
         random.count = 30;
@@ -55,9 +57,12 @@ struct Recording {
         result = machine.run();
         events = std::move(recorder.events);
     }
-    /// A watch that has been shown these events. Events about the same item still refer to one item.
-    LoadWatch watch(const std::vector<Event>& shown) const {
-        LoadWatch watch(plan, settings, Machine::stage_link_depth);
+    LoadWatch watch(const std::vector<Event>& shown) const { return watch(shown, plan, settings); }
+    /// A watch that has been shown these events and expects this. Events about the same item still refer to
+    /// one item.
+    static LoadWatch watch(const std::vector<Event>& shown, const LoadPlan& plan,
+                           const MachineSettings& settings) {
+        LoadWatch watch(plan, settings);
         std::map<const LoadItem*, LoadItem> items;
         for (const Event& event : shown) {
             LoadItem& item = items[event.identity];
@@ -87,14 +92,112 @@ struct Recording {
     std::vector<Event> events;
 };
 
-TEST(LoadWatch, FindsNothingWrongWithARunAsItWas) {
-    const Recording recording;
-    const LoadWatch watch = recording.watch(recording.events);
+MachineSettings feed(int lanes, int bits, int queue) {
+    MachineSettings settings;
+    settings.feed_lanes = lanes;
+    settings.feed_bits = bits;
+    settings.load_queue = queue;
+    return settings;
+}
+
+std::uint64_t most_kept(const LoadWatch& watch) {
+    std::uint64_t most = 0;
+    for (const UnitUse& use : watch.units()) most = std::max(most, use.most_kept);
+    return most;
+}
+
+/// Also expects as many spans kept at a time as the machine counted.
+void expect_nothing_wrong(const Recording& recording) {
+    LoadWatch watch = recording.watch(recording.events);
+    watch.finish_at(recording.result.load_cycles);
     EXPECT_EQ(watch.order().count, 0u) << watch.order().first.front();
     EXPECT_EQ(watch.content().count, 0u) << watch.content().first.front();
     EXPECT_EQ(watch.conservation().count, 0u) << watch.conservation().first.front();
     EXPECT_EQ(watch.promptness().count, 0u) << watch.promptness().first.front();
     EXPECT_EQ(check_bound(recording.result.load_cycles, recording.plan.bound()).count, 0u);
+    EXPECT_EQ(most_kept(watch), recording.result.counters.most_kept);
+}
+
+TEST(LoadWatch, FindsNothingWrongWithARunAsItWas) {
+    const Recording recording;
+    EXPECT_EQ(recording.plan.layout.lanes, 5) << "not more than rows";
+    expect_nothing_wrong(recording);
+}
+
+TEST(LoadWatch, FindsNothingWrongWithOneLaneForAllRows) { expect_nothing_wrong(Recording(feed(1, 128, 0))); }
+
+TEST(LoadWatch, FindsNothingWrongWithNarrowLanesOfTwoRowsAndMore) {
+    expect_nothing_wrong(Recording(feed(2, 7, 0)));
+}
+
+TEST(LoadWatch, FindsNothingWrongWhereCellsKeepOnlyTheSpanAtWork) {
+    const Recording recording(feed(2, 20, 1));
+    expect_nothing_wrong(recording);
+    EXPECT_EQ(most_kept(recording.watch(recording.events)), 1u);
+}
+
+TEST(LoadWatch, FindsNothingWrongWhereCellsKeepThreeSpans) {
+    const Recording recording(feed(3, 128, 3));
+    expect_nothing_wrong(recording);
+    EXPECT_EQ(most_kept(recording.watch(recording.events)), 3u);
+}
+
+TEST(LoadWatch, NoticesACellThatKeepsMoreSpansThanItMay) {
+    const Recording recording(feed(2, 128, 3));
+    const MachineSettings fewer = feed(2, 128, 2);
+    const Faults faults = Recording::watch(recording.events, recording.plan, fewer).promptness();
+    EXPECT_GT(faults.count, 0u);
+}
+
+TEST(LoadWatch, NoticesASpanThatWaitsThoughTheCellHasAPlaceForIt) {
+    const Recording recording(feed(2, 128, 3));
+    const MachineSettings more = feed(2, 128, 4);
+    const Faults faults = Recording::watch(recording.events, recording.plan, more).promptness();
+    EXPECT_GT(faults.count, 0u);
+}
+
+TEST(LoadWatch, NoticesALoadingThatIsOverBeforeTheLastVoxelIsMade) {
+    const Recording recording;
+    LoadWatch watch = recording.watch(recording.events);
+    watch.finish_at(recording.result.load_cycles - 1);
+    ASSERT_EQ(watch.promptness().count, 1u);
+    EXPECT_NE(watch.promptness().first.at(0).find("its last cell is loaded"), std::string::npos);
+}
+
+TEST(LoadWatch, NoticesAPolygonThatGoesDownAnotherLane) {
+    const Recording recording;
+    const Layout& layout = recording.plan.layout;
+    std::vector<Event> events = recording.events;
+    const std::size_t a = recording.find(true, layout.polygons(0), LoadItem::Kind::polygon, 0);
+    for (const Event& event : recording.events) {
+        if (!event.sent || event.link != layout.polygons(1) || event.item.kind != LoadItem::Kind::polygon ||
+            event.item.polygon.id == events[a].item.polygon.id)
+            continue;
+        events[a].item = event.item;
+        break;
+    }
+    const Faults faults = recording.watch(events).content();
+    ASSERT_EQ(faults.count, 1u);
+    EXPECT_NE(faults.first.at(0).find("geometry_0.out"), std::string::npos) << faults.first.at(0);
+}
+
+TEST(LoadWatch, NoticesALaneThatPassesOverAPolygonInOtherCyclesThanItShould) {
+    MachineSettings dear = feed(5, 128, 0);
+    const Recording recording(dear);
+    dear.costs.geometry_skip += 5;
+    const LoadPlan plan = plan_loading(recording.scene, recording.picture, dear);
+    const Faults faults = Recording::watch(recording.events, plan, dear).promptness();
+    ASSERT_GT(faults.count, 0u);
+    EXPECT_NE(faults.first.at(0).find("link geometry_"), std::string::npos) << faults.first.at(0);
+}
+
+TEST(LoadWatch, NoticesWiresOfAnotherWidth) {
+    const Recording recording(feed(2, 128, 0));
+    const MachineSettings narrower = feed(2, 100, 0);
+    const LoadPlan plan = plan_loading(recording.scene, recording.picture, narrower);
+    const Faults faults = Recording::watch(recording.events, plan, narrower).content();
+    ASSERT_GT(faults.count, 0u);
+    EXPECT_NE(faults.first.at(0).find("cycles on the wires"), std::string::npos) << faults.first.at(0);
 }
 
 TEST(LoadWatch, NoticesTwoSpansOfARowThatChangePlaces) {
@@ -114,8 +217,10 @@ TEST(LoadWatch, NoticesTwoSpansOfARowThatChangePlaces) {
 TEST(LoadWatch, NoticesAMessageThatComesOutOfABufferOutOfItsTurn) {
     Recording recording;
     std::vector<Event> events = recording.events;
-    const std::size_t a = recording.find(false, Layout::polygons, LoadItem::Kind::polygon, 4);
-    const std::size_t b = recording.find(false, Layout::polygons, LoadItem::Kind::polygon, 5);
+    const std::size_t a =
+        recording.find(false, recording.plan.layout.polygons(1), LoadItem::Kind::polygon, 4);
+    const std::size_t b =
+        recording.find(false, recording.plan.layout.polygons(1), LoadItem::Kind::polygon, 5);
     std::swap(events[a].identity, events[b].identity);
     std::swap(events[a].item, events[b].item);
     EXPECT_EQ(recording.watch(events).order().count, 2u);
@@ -124,8 +229,8 @@ TEST(LoadWatch, NoticesAMessageThatComesOutOfABufferOutOfItsTurn) {
 TEST(LoadWatch, NoticesOneChangedBitOfATrapeze) {
     const Recording recording;
     std::vector<Event> events = recording.events;
-    Trapeze& trapeze =
-        events[recording.find(true, Layout::trapezes, LoadItem::Kind::trapeze, 7)].item.trapeze;
+    const std::size_t link = recording.plan.layout.trapezes(1);
+    Trapeze& trapeze = events[recording.find(true, link, LoadItem::Kind::trapeze, 7)].item.trapeze;
     trapeze.edges[0].c = std::nextafter(trapeze.edges[0].c, 1e9);
     EXPECT_EQ(recording.watch(events).content().count, 1u);
 }
@@ -170,6 +275,40 @@ TEST(LoadBound, FailsForARunThatIsFasterThanItsBusiestLink) {
     const Faults faults = check_bound(999, bound);
     ASSERT_EQ(faults.count, 1u);
     EXPECT_NE(faults.first[0].find("precomputation.out"), std::string::npos);
+}
+
+TEST(LoadBound, IsTheLargerOfACellsTwoKindsOfWorkNotTheirSum) {
+    LoadPlan plan;
+    plan.units.resize(plan.layout.units());
+    plan.links.resize(plan.layout.links());
+    Need& cell = plan.units[plan.layout.cell(0, 0)];
+    cell.cycles = 70;
+    cell.making = 60;
+    EXPECT_EQ(plan.bound().cycles, 70u);
+    EXPECT_EQ(plan.bound().of, "cell_0_0");
+    cell.making = 80;
+    EXPECT_EQ(plan.bound().cycles, 80u);
+    EXPECT_EQ(plan.bound().of, "voxels of cell_0_0");
+}
+
+TEST(LoadLayout, GivesEachLaneItsRowsAndNoLinkBelowTheLast) {
+    const Layout layout{2, 7, 3};
+    const std::vector<int> lanes = {0, 0, 1, 1, 2, 2, 2};
+    for (int y = 0; y < 7; ++y) {
+        EXPECT_EQ(layout.lane_of(y), lanes[std::size_t(y)]) << y;
+        EXPECT_EQ(layout.absent(layout.down(y)), y == 1 || y == 3 || y == 6) << y;
+        EXPECT_FALSE(layout.absent(layout.row(y)));
+    }
+    EXPECT_EQ(layout.sink_of(layout.trapezes(1)), layout.distributor(2));
+    EXPECT_EQ(layout.input_of(layout.distributor(4)), layout.trapezes(2));
+    EXPECT_EQ(layout.input_of(layout.distributor(5)), layout.down(4));
+    EXPECT_EQ(layout.link_name(layout.trapezes(2)), "precomputation_2.out");
+    EXPECT_EQ((Layout{2, 7, 1}.link_name(1)), "precomputation.out");
+    for (std::size_t link = 0; link < layout.links(); ++link) {
+        if (!layout.absent(link)) {
+            EXPECT_EQ(layout.input_of(layout.sink_of(link)), link) << layout.link_name(link);
+        }
+    }
 }
 
 /// The stores of a timed and an untimed loading. `cell()` gives the timed store with the most edges, to be
@@ -225,36 +364,110 @@ TEST(StoreCheck, FailsWhereOneBitOfOneVoxelDiffersAndSaysWhere) {
     }
 }
 
+/// A triangle with the horizontal side on top, so that it is one trapeze, in the middle of cell (x, y).
+Polygon triangle(std::uint32_t id, std::uint32_t object, double x, double y) {
+    return make_polygon(id, object,
+                        {{x + 0.25, y + 0.25, 4}, {x + 0.75, y + 0.25, 4}, {x + 0.25, y + 0.75, 4}});
+}
+
+CellScene scene_of(const PictureSettings& picture, const std::vector<Polygon>& polygons) {
+    CellScene scene;
+    scene.frame.width = picture.width;
+    scene.frame.height = picture.height;
+    scene.frame.depth = 8;
+    scene.frame.depth_levels = picture.depth_levels;
+    for (const Polygon& polygon : polygons)
+        scene.objects.resize(std::max<std::size_t>(scene.objects.size(), polygon.object + 1));
+    scene.polygons = polygons;
+    return scene;
+}
+
+/// A lane looks once at an object none of whose polygons touches its rows, else at each of its polygons.
+TEST(LoadPlan, ALanePassesOverWhatDoesNotTouchItsRows) {
+    const PictureSettings picture = picture_of(1, 2);
+    MachineSettings settings = feed(2, 128, 0);
+    settings.costs = estimated_machine().costs;
+    settings.costs.geometry_polygon = 40;
+    settings.costs.geometry_skip = 3;
+    const CellScene scene =
+        scene_of(picture, {triangle(0, 0, 0, 0), triangle(1, 0, 0, 0), triangle(2, 1, 0, 1),
+                           triangle(3, 1, 0, 0), triangle(4, 2, 0, 1), triangle(5, 2, 9, 1)});
+    const LoadPlan plan = plan_loading(scene, picture, settings);
+    const std::vector<std::uint32_t> upper = {1,                 // sources and viewer
+                                              1,     41, 41,     // object 0
+                                              1 + 3, 41,         // object 1: polygon 3
+                                              1 + 3};            // object 2, the mark
+    const std::vector<std::uint32_t> lower = {1,     1 + 3, 41,  // past object 0; object 1: polygon 2
+                                              1 + 3, 41,         // past polygon 3; object 2: polygon 4
+                                              1 + 40};           // polygon 5 lies outside the cube
+    EXPECT_EQ(plan.lanes.at(0).geometry_work, upper);
+    EXPECT_EQ(plan.lanes.at(1).geometry_work, lower);
+    EXPECT_EQ(plan.counts.polygons, 5u);
+    EXPECT_EQ(plan.counts.trapezes, 5u);
+    EXPECT_EQ(plan.sent_polygons, 5u) << "none of these needs two lanes";
+    const LoadPlan single = plan_loading(scene, picture, [&] {
+        MachineSettings one = settings;
+        one.feed_lanes = 1;
+        return one;
+    }());
+    const std::vector<std::uint32_t> all = {1, 1, 41, 41, 1, 41, 41, 1, 41, 1 + 40};
+    EXPECT_EQ(single.lanes.at(0).geometry_work, all) << "the only lane passes over nothing";
+}
+
 /// Cycles computed by hand from the cost table and the bits of the messages: one triangle in one cell.
 TEST(LoadCycles, OneTriangleInOneCellTakesTheCyclesOfItsMessages) {
     expect_first_elaboration();
     const PictureSettings picture = picture_of(1, 1);
     MachineSettings settings = estimated_machine();
-    CellScene scene;
-    scene.frame.depth = 8;
-    scene.frame.depth_levels = picture.depth_levels;
-    scene.objects.resize(1);
-    // The horizontal side is on top, so that the triangle is one trapeze.
-    scene.polygons.push_back(make_polygon(0, 0, {{0.25, 0.25, 4}, {0.75, 0.25, 4}, {0.25, 0.75, 4}}));
+    settings.feed_bits = 50;
+    settings.link_bits = 20;
+    const CellScene scene = scene_of(picture, {triangle(0, 0, 0, 0)});
     const LoadPlan plan = plan_loading(scene, picture, settings);
     ASSERT_EQ(plan.counts.trapezes, 1u);
     Machine machine("machine", scene, picture, settings, nullptr);
     const RunResult result = machine.run();
     const MessageBits& bits = machine.environment().bits;
-    const auto link = [](int message_bits_) { return Cycle((message_bits_ + 19) / 20); };
+    const auto feed_link = [](int message_bits_) { return Cycle((message_bits_ + 49) / 50); };
+    const auto row_link = [](int message_bits_) { return Cycle((message_bits_ + 19) / 20); };
     // Sources and viewer leave geometry in cycle 2, the features one cycle of work later when the wires are
     // free, and the polygon after 41 cycles of work.
     Cycle t = 2;
-    t = std::max(t + 2, t + link(bits.setup(0)));
-    t = std::max(t + 1 + 41, t + link(bits.features));
-    t += link(bits.polygon + 3 * bits.vertex);
+    t = std::max(t + 2, t + feed_link(bits.setup(0)));
+    t = std::max(t + 1 + 41, t + feed_link(bits.features));
+    t += feed_link(bits.polygon + 3 * bits.vertex);
     // What its trapezes share leaves a cycle later; the trapeze is ready when the wires are free again.
-    t += 1 + std::max(Cycle(1 + 20), link(bits.surface));
-    t += link(bits.longest_trapeze()) + 8 + link(bits.longest_span()) + 12;
-    // The mark has been waiting behind the span for a place in the buffer: one cycle until the distributor
-    // sees it, one on the wires, one in the cell.
-    EXPECT_EQ(result.load_cycles, t + 3);
-    EXPECT_LE(plan.longest_way.cycles, t);
+    t += 1 + std::max(Cycle(1 + 20), feed_link(bits.surface));
+    t += feed_link(bits.longest_trapeze()) + 8 + row_link(bits.longest_span());
+    // The cell looks at the span for a cycle and then makes its voxel. The mark passes in the meantime.
+    EXPECT_EQ(result.load_cycles, t + 1 + 12);
+    // The span's way is all of that but what waits for the messages before it.
+    EXPECT_EQ(plan.longest_way.cycles, 41 + feed_link(bits.polygon + 3 * bits.vertex) + 20 +
+                                           feed_link(bits.longest_trapeze()) + 8 +
+                                           row_link(bits.longest_span()) + 1 + 12);
+}
+
+/// Two spans for the first cell and one for the second, all long before the first voxel is made.
+TEST(LoadCycles, ASpanWaitsForAPlaceInTheCellAndThoseBehindItWaitToo) {
+    expect_first_elaboration();
+    const PictureSettings picture = picture_of(2, 1);
+    MachineSettings settings = estimated_machine();
+    constexpr Cycle making = 1000;
+    settings.costs.load_edge = making;
+    const CellScene scene =
+        scene_of(picture, {triangle(0, 0, 0, 0), triangle(1, 0, 0, 0), triangle(2, 0, 1, 0)});
+    std::vector<std::unique_ptr<Machine>> machines;
+    for (const int queue : {0, 1, 2}) {
+        settings.load_queue = queue;
+        const std::string name = "queue_" + std::to_string(queue);
+        machines.push_back(std::make_unique<Machine>(name.c_str(), scene, picture, settings, nullptr));
+    }
+    std::vector<Cycle> cycles;
+    for (const auto& machine : machines) cycles.push_back(machine->run().load_cycles);
+    EXPECT_EQ(cycles[2], cycles[0]) << "two places are enough";
+    // The first voxel is done `making` cycles before the end of the others. Then the second span's voxel
+    // begins, and the third leaves its row a cycle later: two links, a cycle in each cell, and its own voxel.
+    const int bits = machines[0]->environment().bits.longest_span();
+    EXPECT_EQ(cycles[1], cycles[0] - making + 1 + 2 * (Cycle(bits + 19) / 20 + 1) + making);
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ struct Loading : Row {
         hand_made::add_rectangle(scene, 0, {0.25, 0.25, 4}, {0, 0.5, 0}, {cells - 0.5, 0, 0});
         settings.stage = RunStage::load;
     }
-    /// Cycle in which the last cell has taken the end-of-scene mark and loading is complete.
+    /// Cycle in which the last cell has made its voxel and loading is complete.
     Cycle expected() const {
         const int columns = 2 * int(std::ceil(std::log2(settings.width)));
         // Link cycles of 217 bits (type 3, viewer 103, faces 6, background 60, levels 38, sources 7) and of
@@ -126,11 +126,12 @@ struct Loading : Row {
         // The row cuts its span in 8 cycles; a span is 3 + 20 + columns + 147 + 324 + 435 bits.
         const int span_link = (929 + columns + 19) / 20;
         const int span_arrives = trapeze_arrives + 8 + span_link;
-        // Each cell makes its voxel in 12 cycles and passes the span on; the last one drops it.
-        const int span_done = span_arrives + (settings.width - 1) * (12 + span_link) + 12;
-        // With buffers of one message, the end-of-scene mark follows once the last buffer is empty: it is
-        // sent in the next cycle and takes one cycle on the wires and one in the cell.
-        return Cycle(span_done + 1 + 1 + 1);
+        // Each cell keeps the span for its voxel and passes it on after 1 cycle.
+        const int span_kept = span_arrives + (settings.width - 1) * (1 + span_link) + 1;
+        // The last one makes its voxel in 12 cycles. The end-of-scene mark is there before: it is sent in the
+        // cycle after that in which the last buffer was emptied and takes one cycle on the wires and one in
+        // the cell.
+        return Cycle(span_kept + 12);
     }
 };
 

@@ -107,6 +107,9 @@ void draw_machine(Drawn& drawn, property::Random& random) {
     }
     m.costs.backoff = std::uint32_t(random.whole(1, 16));  // short, since each livelock must be waited for
     if (random.chance(0.3)) m.stall = random.uniform(0.01, 0.6);
+    m.feed_lanes = random.whole(1, 6);
+    m.feed_bits = random.whole(1, 300);
+    m.load_queue = random.chance(0.5) ? 0 : random.whole(1, 4);
     // Further settings that only affect time belong here.
 }
 

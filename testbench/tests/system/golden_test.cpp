@@ -254,7 +254,7 @@ TEST_F(AlteredVectors, WhateverACellIsToldItIsCheckedAndNothingBreaks) {
 
 /// The record is unchanged, but the cell has other costs.
 TEST_F(AlteredVectors, ACellThatTakesAnotherTimeFails) {
-    for (const std::string change : {"walk_step=5", "route_return=2", "shade_setup=21", "load_edge=13"}) {
+    for (const std::string change : {"walk_step=5", "route_return=2", "shade_setup=21", "load_advance=2"}) {
         Vectors changed = original_;
         const std::string name = change.substr(0, change.find('=') + 1);
         for (std::string& line : changed.lines) {

@@ -15,7 +15,7 @@ struct Loads {
     LoadItem item;
     LoadItem* work(int x, Cycle now, Wakeup& wakeup) {
         scheduler.set_now(now);
-        return unit.work(link, x, costs, HitTest::mask, now, wakeup);
+        return unit.work(link, x, costs, now, wakeup);
     }
 };
 
@@ -38,9 +38,56 @@ void expect_work(int x, std::uint32_t CostTable::*cycles) {
     EXPECT_EQ(loads.unit.item(), nullptr);
 }
 
-TEST(LoadingUnit, MakesTheVoxelOfASpanThatHasComeToItsColumn) { expect_work(4, &CostTable::load_mask); }
+TEST(LoadingUnit, MovesASpanThatHasComeToItsColumnOnWithoutItsVoxel) {
+    expect_work(4, &CostTable::load_advance);
+}
 
 TEST(LoadingUnit, PassesASpanOnThatHasNotComeYet) { expect_work(5, &CostTable::load_forward); }
+
+TEST(LoadingUnit, MakesTheVoxelsOfTheSpansThatItKeepsOneAfterTheOther) {
+    LoadingUnit unit;
+    Wakeup wakeup;
+    EXPECT_EQ(unit.kept(100, 7), 0);
+    unit.keep(100, 10);
+    EXPECT_EQ(unit.made(), 110u);
+    unit.keep(100, 30);
+    EXPECT_EQ(unit.made(), 210u);
+    EXPECT_EQ(unit.kept(100, 30), 2);
+    EXPECT_EQ(unit.kept(100, 109), 2);
+    EXPECT_EQ(unit.kept(100, 110), 1);
+    EXPECT_EQ(unit.kept(100, 210), 0);
+    unit.keep(100, 500);
+    EXPECT_EQ(unit.made(), 600u) << "it was idle";
+    EXPECT_EQ(wakeup.next, never);
+}
+
+TEST(LoadingUnit, KeepsNoMoreSpansThanItMayAndAsksToBeWokenWhenOneIsDone) {
+    LoadingUnit unit;
+    Wakeup wakeup;
+    unit.keep(100, 10);
+    unit.keep(100, 30);
+    EXPECT_TRUE(unit.has_room(3, 100, 40, wakeup));
+    EXPECT_TRUE(unit.has_room(0, 100, 40, wakeup)) << "no limit";
+    EXPECT_EQ(wakeup.next, never);
+    EXPECT_FALSE(unit.has_room(2, 100, 40, wakeup));
+    EXPECT_EQ(wakeup.next, 110u);
+    EXPECT_TRUE(unit.has_room(2, 100, 110, wakeup));
+    Wakeup later;
+    EXPECT_FALSE(unit.has_room(1, 100, 110, later));
+    EXPECT_EQ(later.next, 210u);
+}
+
+TEST(LoadingUnit, IsLoadedOnceWhenTheMarkHasPassedAndTheLastVoxelIsMade) {
+    LoadingUnit unit;
+    Wakeup wakeup;
+    EXPECT_FALSE(unit.closes(5, wakeup)) << "no mark yet";
+    unit.keep(100, 10);
+    unit.close();
+    EXPECT_FALSE(unit.closes(20, wakeup));
+    EXPECT_EQ(wakeup.next, 110u);
+    EXPECT_TRUE(unit.closes(110, wakeup));
+    EXPECT_FALSE(unit.closes(111, wakeup));
+}
 
 TEST(LoadingUnit, EndsASpanAtItsLastColumnAndWhatIsBroadcastAtTheRowsEnd) {
     LoadItem span;
