@@ -24,9 +24,7 @@ def run(root, scenes, cache, scene, datapath):
         cells = list(csv.DictReader(file))
     report["busiest"] = {unit: max(int(c[f"{unit}_cycles"]) for c in cells) / report["cycles"]["trace"]
                          for unit in ("traversal", "shading")}
-    costs = dict(entry.split("=") for entry in report["config"]["cost"])
-    making = max(int(c["voxels"]) for c in cells) * int(costs["load_" + report["config"]["hit"]])
-    report["making"] = making / report["cycles"]["load"]
+    report["making"] = max(int(c["loading_cycles"]) for c in cells) / report["cycles"]["load"]
     return report
 
 
@@ -43,7 +41,7 @@ def frame_table(results):
 
 def units_of(report):
     """Shares of loading, and of the trace, in which units are at work."""
-    return {"loading: the fullest cell makes its voxels": report["making"],
+    return {"loading: the busiest cell makes voxels": report["making"],
             "loading: precomputation": report["stages"]["precomputation"]["utilisation"],
             "trace: traversal unit, mean": report["units"]["traversal"]["utilisation"],
             "traversal unit of the busiest cell": report["busiest"]["traversal"],
