@@ -100,6 +100,31 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
     return frame;
 }
 
+namespace {
+
+/// A sphere or a cone in cell coordinates, without the ids of its polygons; nothing for a polygon.
+std::optional<CurvedSurface> curved_surface(const Primitive& primitive, const Frame& frame) {
+    CurvedSurface surface;
+    surface.object = primitive.material;
+    if (const auto* sphere = std::get_if<SpherePrimitive>(&primitive.shape)) {
+        surface.base = frame.to_cells(sphere->centre);
+        surface.base_radius = sphere->radius / frame.cell_width;
+        surface.inward = sphere->inward;
+        return surface;
+    }
+    const auto* cone = std::get_if<ConePrimitive>(&primitive.shape);
+    if (!cone) return std::nullopt;
+    surface.kind = CurvedSurface::Kind::cone;
+    surface.base = frame.to_cells(cone->base);
+    surface.apex = frame.to_cells(cone->apex);
+    surface.base_radius = cone->base_radius / frame.cell_width;
+    surface.apex_radius = cone->apex_radius / frame.cell_width;
+    surface.inward = cone->inward;
+    return surface;
+}
+
+}  // namespace
+
 CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings) {
     if (scene.sources.size() > max_sources) {
         throw std::invalid_argument("the scene has " + std::to_string(scene.sources.size()) +
@@ -115,8 +140,13 @@ CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSetti
         placed.sources.push_back({frame.to_cells(source.position), source.colour.value_or(dvec3(share))});
     }
     for (const Primitive& primitive : scene.primitives) {
-        auto polygons = tessellate(primitive, std::uint32_t(placed.polygons.size()), frame,
-                                   settings.chord_error, &placed.warnings);
+        const auto first = std::uint32_t(placed.polygons.size());
+        auto polygons = tessellate(primitive, first, frame, settings.chord_error, &placed.warnings);
+        if (auto surface = curved_surface(primitive, frame); surface && !polygons.empty()) {
+            surface->first_polygon = first;
+            surface->polygons = std::uint32_t(polygons.size());
+            placed.curved.push_back(*surface);
+        }
         std::move(polygons.begin(), polygons.end(), std::back_inserter(placed.polygons));
     }
     const Box cube = frame.cube();

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/geometry/curved.hpp"
 #include "model/geometry/polygon.hpp"
 #include "model/geometry/scene.hpp"
 #include "model/numbers/arithmetic.hpp"
@@ -61,6 +63,8 @@ struct CellScene {
     std::vector<Material> objects;
     std::vector<Source> sources;
     std::vector<Polygon> polygons;
+    std::vector<CurvedSurface> curved;  ///< spheres and cones, which have polygons, too
+    std::optional<Box> within;          ///< of a clipped scene: curved surfaces count inside it alone
     std::vector<std::string> warnings;  ///< what is not treated as written, for standard error
     std::array<bool, 6> beyond{};       ///< per Face: whether any polygon reaches beyond its plane
 };

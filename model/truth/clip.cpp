@@ -8,6 +8,7 @@ CellScene clip_scene(const CellScene& scene) {
     CellScene clipped = scene;
     clipped.beyond = {};
     const Box cube = scene.frame.cube();
+    clipped.within = cube;
     std::vector<Polygon>& polygons = clipped.polygons;
     for (Polygon& polygon : polygons) polygon.vertices = clip_to_box(std::move(polygon.vertices), cube);
     polygons.erase(

@@ -1,4 +1,4 @@
-#include "model/truth/polygon_index.hpp"
+#include "model/truth/surface_index.hpp"
 
 #include <embree3/rtcore.h>
 
@@ -17,7 +17,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double coordinate_limit = 1e15;  ///< Embree ignores boxes beyond 1.8e18
 
-/// At most this many polygons, of those that reach farthest, may stand apart from Embree's tree.
+/// At most this many surfaces, of those that reach farthest, may stand apart from Embree's tree.
 constexpr std::size_t most_apart = 16;
 
 /// A query, stored behind Embree's own context; Embree hands the context's address back to the callbacks.
@@ -40,11 +40,9 @@ struct Query {
     }
     static Query& of(RTCIntersectContext* context) { return *reinterpret_cast<Query*>(context); }
 
-    /// Records the polygon if the ray meets it, and no other by more than a tie before it; true if recorded.
-    bool offer(const std::vector<Polygon>& polygons, std::size_t candidate) {
-        const Polygon& polygon = polygons[candidate];
-        if (polygon.id == exclude) return false;
-        const std::optional<double> t = ray.meet(polygon, nearest_hit, t_max);
+    /// Records the surface if the ray meets it, and no other by more than a tie before it; true if recorded.
+    bool offer(const Surfaces& surfaces, std::size_t candidate) {
+        const std::optional<double> t = surfaces.meet(candidate, ray, exclude, nearest_hit, t_max);
         if (!t) return false;
         if (*t < nearest - exact_tie) hits.clear();
         hits.push_back({*t, candidate});
@@ -54,11 +52,11 @@ struct Query {
     }
 
     /// Of the hits within a tie of the nearest, the one with the lowest id.
-    std::optional<PolygonIndex::Nearest> chosen(const std::vector<Polygon>& polygons) const {
-        std::optional<PolygonIndex::Nearest> best;
+    std::optional<SurfaceIndex::Nearest> chosen(const Surfaces& surfaces) const {
+        std::optional<SurfaceIndex::Nearest> best;
         for (const Hit& hit : hits) {
             if (hit.t > nearest + exact_tie) continue;
-            if (!best || polygons[hit.index].id < polygons[best->index].id) best = {hit.t, hit.index};
+            if (!best || surfaces.id(hit.index) < surfaces.id(best->index)) best = {hit.t, hit.index};
         }
         return best;
     }
@@ -69,7 +67,7 @@ float float_above(double value) {
     return std::nextafter(nearest, std::numeric_limits<float>::infinity());
 }
 
-Box bounds_of(const Polygon& polygon) {
+Box polygon_bounds(const Polygon& polygon) {
     Box box{dvec3(infinity), dvec3(-infinity)};
     for (const dvec3& vertex : polygon.vertices) {
         box.low = glm::min(box.low, vertex);
@@ -84,10 +82,19 @@ double reach_of(const Box& box) {
     return std::max({reach.x, reach.y, reach.z});
 }
 
-void check(const Polygon& polygon) {
+void check(const Surfaces& surfaces, std::size_t i) {
     const auto reject = [&](const char* why) {
-        throw std::invalid_argument("polygon " + std::to_string(polygon.id) + " " + why);
+        throw std::invalid_argument("polygon " + std::to_string(surfaces.id(i)) + " " + why);
     };
+    if (!surfaces.polygon(i)) {
+        const Box box = surfaces.bounds(i);
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(std::abs(box.low[axis]) <= coordinate_limit &&
+                  std::abs(box.high[axis]) <= coordinate_limit))
+                reject("is of a curved surface that is not finite or reaches beyond 1e15 cells");
+        return;
+    }
+    const Polygon& polygon = *surfaces.polygon(i);
     if (polygon.vertices.size() < 3) reject("has fewer than 3 vertices");
     for (const dvec3& vertex : polygon.vertices)
         for (int axis = 0; axis < 3; ++axis)
@@ -124,16 +131,47 @@ Interval clip_ray(const ProbeRay& ray, const Box& box, double t_max) {
 
 }  // namespace
 
-struct PolygonIndex::Tree {
-    const std::vector<Polygon>& polygons;
-    std::vector<std::size_t> apart;                 ///< polygons tried for every ray
-    std::vector<std::size_t> members;               ///< polygons in Embree's tree, by its primitive ids
+std::vector<std::size_t> Surfaces::met() const {
+    std::vector<std::size_t> numbers;
+    std::vector<bool> flat(scene_.polygons.size(), true);
+    if (of_ == TruthOf::scene) {
+        for (std::size_t i = 0; i < flat.size(); ++i) {
+            // Both are in the order of their ids; a clipped scene has lost some polygons.
+            const auto after = std::upper_bound(
+                scene_.curved.begin(), scene_.curved.end(), scene_.polygons[i].id,
+                [](std::uint32_t id, const CurvedSurface& c) { return id < c.first_polygon; });
+            flat[i] = after == scene_.curved.begin() || !std::prev(after)->owns(scene_.polygons[i].id);
+        }
+    }
+    for (std::size_t i = 0; i < end(); ++i) {
+        if (!polygon(i) || flat[i]) numbers.push_back(i);
+    }
+    return numbers;
+}
+
+Box Surfaces::bounds(std::size_t i) const {
+    const Polygon* p = polygon(i);
+    return p ? polygon_bounds(*p) : raycell::bounds_of(curved(i));
+}
+
+std::optional<double> Surfaces::meet(std::size_t i, const ProbeRay& ray, std::uint32_t leaves, double t_min,
+                                     double t_max) const {
+    if (const Polygon* p = polygon(i)) return p->id == leaves ? std::nullopt : ray.meet(*p, t_min, t_max);
+    const CurvedSurface& surface = curved(i);
+    return raycell::meet(surface, ray.origin(), ray.direction(), t_min, t_max, surface.owns(leaves),
+                         scene_.within ? &*scene_.within : nullptr);
+}
+
+struct SurfaceIndex::Tree {
+    const Surfaces surfaces;
+    std::vector<std::size_t> apart;                 ///< surfaces tried for every ray
+    std::vector<std::size_t> members;               ///< surfaces in Embree's tree, by its primitive ids
     Box bounds{dvec3(infinity), dvec3(-infinity)};  ///< of the members, padded
     double pad = 0;
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
-    explicit Tree(const std::vector<Polygon>& all) : polygons(all) {}
+    explicit Tree(const Surfaces& all) : surfaces(all) {}
     ~Tree() {
         if (scene) rtcReleaseScene(scene);
         if (device) rtcReleaseDevice(device);
@@ -150,39 +188,39 @@ struct PolygonIndex::Tree {
     static void on_occluded(const RTCOccludedFunctionNArguments* args);
 };
 
-void PolygonIndex::Tree::on_bounds(const RTCBoundsFunctionArguments* args) {
+void SurfaceIndex::Tree::on_bounds(const RTCBoundsFunctionArguments* args) {
     const Tree& tree = of(args->geometryUserPtr);
-    Box box = bounds_of(tree.polygons[tree.members[args->primID]]);
+    Box box = tree.surfaces.bounds(tree.members[args->primID]);
     box.low -= tree.pad;
     box.high += tree.pad;
     *args->bounds_o = {float(box.low.x),  float(box.low.y),  float(box.low.z),  0,
                        float(box.high.x), float(box.high.y), float(box.high.z), 0};
 }
 
-void PolygonIndex::Tree::on_intersect(const RTCIntersectFunctionNArguments* args) {
+void SurfaceIndex::Tree::on_intersect(const RTCIntersectFunctionNArguments* args) {
     if (!args->valid[0]) return;
     Query& query = Query::of(args->context);
     const Tree& tree = of(args->geometryUserPtr);
-    if (!query.offer(tree.polygons, tree.members[args->primID])) return;
+    if (!query.offer(tree.surfaces, tree.members[args->primID])) return;
     // Boxes are padded, so a box that begins beyond this holds nothing as near as the hit.
     reinterpret_cast<RTCRayHit*>(args->rayhit)->ray.tfar = float_above(query.t_max - query.start);
 }
 
-void PolygonIndex::Tree::on_occluded(const RTCOccludedFunctionNArguments* args) {
+void SurfaceIndex::Tree::on_occluded(const RTCOccludedFunctionNArguments* args) {
     if (!args->valid[0]) return;
     const Tree& tree = of(args->geometryUserPtr);
-    if (!Query::of(args->context).offer(tree.polygons, tree.members[args->primID])) return;
+    if (!Query::of(args->context).offer(tree.surfaces, tree.members[args->primID])) return;
     // Tells Embree to stop: something is in the way.
     reinterpret_cast<RTCRay*>(args->ray)->tfar = -std::numeric_limits<float>::infinity();
 }
 
-/// Keeps a few polygons apart that reach much farther than all others, such as a floor to the horizon. In the
+/// Keeps a few surfaces apart that reach much farther than all others, such as a floor to the horizon. In the
 /// tree they would cost every other polygon its precision, and the padding would make the tree useless.
-void PolygonIndex::Tree::divide() {
+void SurfaceIndex::Tree::divide() {
     std::vector<std::pair<double, std::size_t>> by_reach;
-    for (std::size_t i = 0; i < polygons.size(); ++i) {
-        check(polygons[i]);
-        by_reach.emplace_back(reach_of(bounds_of(polygons[i])), i);
+    for (const std::size_t i : surfaces.met()) {
+        check(surfaces, i);
+        by_reach.emplace_back(reach_of(surfaces.bounds(i)), i);
     }
     const std::size_t most = std::min(most_apart, by_reach.size());
     std::partial_sort(by_reach.begin(), by_reach.begin() + std::ptrdiff_t(most), by_reach.end(),
@@ -200,9 +238,9 @@ void PolygonIndex::Tree::divide() {
 /// by which single precision moves a point of the ray: half a unit in the last place of the origin, and of
 /// the direction over the diagonal. The members' box bounds both, because Embree gets a ray only from where
 /// it enters that box.
-void PolygonIndex::Tree::measure() {
+void SurfaceIndex::Tree::measure() {
     for (const std::size_t member : members) {
-        const Box box = bounds_of(polygons[member]);
+        const Box box = surfaces.bounds(member);
         bounds.low = glm::min(bounds.low, box.low);
         bounds.high = glm::max(bounds.high, box.high);
     }
@@ -211,7 +249,7 @@ void PolygonIndex::Tree::measure() {
     bounds.high += pad;
 }
 
-void PolygonIndex::Tree::build() {
+void SurfaceIndex::Tree::build() {
     // One thread: many programs may run beside each other, and building takes about a microsecond per
     // polygon.
     device = rtcNewDevice("threads=1");
@@ -230,12 +268,12 @@ void PolygonIndex::Tree::build() {
     rtcCommitScene(scene);
     const RTCError error = rtcGetDeviceError(device);
     if (error != RTC_ERROR_NONE)
-        fail(error, "can't build its tree over " + std::to_string(members.size()) + " polygons");
+        fail(error, "can't build its tree over " + std::to_string(members.size()) + " surfaces");
 }
 
 /// Sets up Embree's ray one pad before the query's ray enters the tree, so that rounding can't put the first
 /// polygon behind its origin. False if the ray misses the tree.
-bool PolygonIndex::Tree::begin(RTCRay& ray, Query& query) const {
+bool SurfaceIndex::Tree::begin(RTCRay& ray, Query& query) const {
     if (!scene) return false;
     const Interval inside = clip_ray(query.ray, bounds, query.t_max);
     if (!(inside.low <= inside.high)) return false;
@@ -257,32 +295,32 @@ bool PolygonIndex::Tree::begin(RTCRay& ray, Query& query) const {
     return true;
 }
 
-PolygonIndex::PolygonIndex(const std::vector<Polygon>& polygons) : tree_(std::make_unique<Tree>(polygons)) {
+SurfaceIndex::SurfaceIndex(const Surfaces& surfaces) : tree_(std::make_unique<Tree>(surfaces)) {
     tree_->divide();
     if (tree_->members.empty()) return;
     tree_->measure();
     tree_->build();
 }
 
-PolygonIndex::~PolygonIndex() = default;
+SurfaceIndex::~SurfaceIndex() = default;
 
-std::optional<PolygonIndex::Nearest> PolygonIndex::nearest(const ProbeRay& ray, std::uint32_t exclude,
+std::optional<SurfaceIndex::Nearest> SurfaceIndex::nearest(const ProbeRay& ray, std::uint32_t exclude,
                                                            double t_max) const {
     Query query(ray, exclude, t_max);
-    for (const std::size_t polygon : tree_->apart) query.offer(tree_->polygons, polygon);
+    for (const std::size_t surface : tree_->apart) query.offer(tree_->surfaces, surface);
     RTCRayHit embree_ray;
     if (tree_->begin(embree_ray.ray, query)) {
         embree_ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         embree_ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(tree_->scene, &query.context, &embree_ray);
     }
-    return query.chosen(tree_->polygons);
+    return query.chosen(tree_->surfaces);
 }
 
-bool PolygonIndex::any(const ProbeRay& ray, std::uint32_t exclude, double t_max) const {
+bool SurfaceIndex::any(const ProbeRay& ray, std::uint32_t exclude, double t_max) const {
     Query query(ray, exclude, t_max);
-    for (const std::size_t polygon : tree_->apart)
-        if (query.offer(tree_->polygons, polygon)) return true;
+    for (const std::size_t surface : tree_->apart)
+        if (query.offer(tree_->surfaces, surface)) return true;
     RTCRay embree_ray;
     if (tree_->begin(embree_ray, query)) rtcOccluded1(tree_->scene, &query.context, &embree_ray);
     return !query.hits.empty();

@@ -32,7 +32,7 @@ struct TruthRenderer::Tracer {
     };
 
     dvec3 trace(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, Rank rank);
-    dvec3 shade(const ShadePoint& point, const Polygon& polygon, Rank rank);
+    dvec3 shade(const ShadePoint& point, const TruthHit& hit, Rank rank);
     std::uint64_t lit_sources(const ShadePoint& point, std::uint32_t polygon);
     bool sends(double share, Rank rank) const {
         return share > 0 && rank.generation < limits.max_depth && rank.weight * share >= limits.min_weight;
@@ -42,9 +42,12 @@ struct TruthRenderer::Tracer {
 };
 
 ShadePoint TruthRenderer::Tracer::point_at(const TruthHit& hit, const dvec3& direction) const {
-    const Polygon& polygon = truth.scene_.polygons[hit.index];
-    const dvec3 normal = polygon.normal.at(project(hit.position, polygon.drop));
-    return shade_point(hit.position, direction, normal, polygon.plane.n);
+    if (const Polygon* polygon = truth.surfaces_.polygon(hit.index)) {
+        const dvec3 normal = polygon->normal.at(project(hit.position, polygon->drop));
+        return shade_point(hit.position, direction, normal, polygon->plane.n);
+    }
+    const dvec3 normal = normal_at(truth.surfaces_.curved(hit.index), hit.position);
+    return shade_point(hit.position, direction, normal, normal);
 }
 
 /// One bit per source that the normal faces and nothing hides.
@@ -61,25 +64,25 @@ std::uint64_t TruthRenderer::Tracer::lit_sources(const ShadePoint& point, std::u
     return lit;
 }
 
-dvec3 TruthRenderer::Tracer::shade(const ShadePoint& point, const Polygon& polygon, Rank rank) {
+dvec3 TruthRenderer::Tracer::shade(const ShadePoint& point, const TruthHit& hit, Rank rank) {
     const CellScene& scene = truth.scene_;
-    const Material& material = scene.objects[polygon.object];
+    const Material& material = scene.objects[truth.surfaces_.object(hit.index)];
     const dvec3 local = local_intensity(point, material, scene.sources.data(), scene.sources.size(),
-                                        lit_sources(point, polygon.id));
+                                        lit_sources(point, hit.polygon));
     dvec3 reflected(0), refracted(0);
     const double mirrored = mirror_share(material);
     const double transmitted = transmit_share(material);
     const bool by_rule = limits.transmitters_reflect && transmitted > 0 && rank.generation < limits.max_depth;
     if (by_rule || sends(mirrored, rank)) {
         ++counts.reflected;
-        reflected = trace(point.position, reflect_direction(point), polygon.id,
+        reflected = trace(point.position, reflect_direction(point), hit.polygon,
                           {rank.generation + 1, rank.weight * mirrored});
     }
     dvec3 onward;
     const bool bends = transmitted > 0 && refract_direction(point, material.ior, onward);
     if (sends(transmitted, rank) && !(by_rule && !bends)) {
         ++(bends ? counts.refracted : counts.reflected);
-        refracted = trace(point.position, bends ? onward : reflect_direction(point), polygon.id,
+        refracted = trace(point.position, bends ? onward : reflect_direction(point), hit.polygon,
                           {rank.generation + 1, rank.weight * transmitted});
     }
     return combine_intensity(local, material, reflected, refracted);
@@ -89,7 +92,7 @@ dvec3 TruthRenderer::Tracer::trace(const dvec3& origin, const dvec3& direction, 
                                    Rank rank) {
     const std::optional<TruthHit> hit = truth.intersect(origin, direction, exclude);
     if (!hit) return truth.scene_.background;
-    return shade(point_at(*hit, direction), truth.scene_.polygons[hit->index], rank);
+    return shade(point_at(*hit, direction), *hit, rank);
 }
 
 /// Fills a pixel from the primary ray through (x, y) cells.
@@ -107,11 +110,11 @@ void TruthRenderer::Tracer::primary(double x, double y, Pixel& pixel) {
     pixel.depth = hit->position.z;
     pixel.normal = point.normal;
     pixel.polygon = hit->polygon;
-    pixel.colour = shade(point, truth.scene_.polygons[hit->index], {0, 1.0});
+    pixel.colour = shade(point, *hit, {0, 1.0});
 }
 
 TruthRenderer::TruthRenderer(const CellScene& scene, const TruthSettings& settings)
-    : scene_(scene), settings_(settings), index_(scene.polygons) {
+    : scene_(scene), settings_(settings), surfaces_(scene, settings.of), index_(surfaces_) {
     if (settings.max_depth < 0) throw std::invalid_argument("max_depth is negative");
     if (scene.sources.size() > max_sources)
         throw std::invalid_argument(std::to_string(scene.sources.size()) + " sources, at most " +
@@ -121,14 +124,18 @@ TruthRenderer::TruthRenderer(const CellScene& scene, const TruthSettings& settin
             throw std::invalid_argument("polygon " + std::to_string(polygon.id) + " is of object " +
                                         std::to_string(polygon.object) + ", but there are only " +
                                         std::to_string(scene.objects.size()));
+    for (const CurvedSurface& surface : scene.curved)
+        if (surface.object >= scene.objects.size())
+            throw std::invalid_argument("a curved surface is of object " + std::to_string(surface.object) +
+                                        ", but there are only " + std::to_string(scene.objects.size()));
 }
 
 std::optional<TruthHit> TruthRenderer::intersect(const dvec3& origin, const dvec3& direction,
                                                  std::uint32_t exclude, double t_max) const {
     const ProbeRay ray(origin, direction);
-    const std::optional<PolygonIndex::Nearest> found = index_.nearest(ray, exclude, t_max);
+    const std::optional<SurfaceIndex::Nearest> found = index_.nearest(ray, exclude, t_max);
     if (!found) return std::nullopt;
-    return TruthHit{found->t, scene_.polygons[found->index].id, found->index, ray.at(found->t)};
+    return TruthHit{found->t, surfaces_.id(found->index), found->index, ray.at(found->t)};
 }
 
 bool TruthRenderer::occluded(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
@@ -160,7 +167,7 @@ TruthCounts TruthRenderer::count(int n, int threads, const Progress& progress) c
     const double step_y = (scene_.frame.height - 1.0) / (n - 1);
     std::vector<TruthCounts> rows(static_cast<std::size_t>(n));
     for_each_row(n, threads, progress, [&](int y) {
-        Tracer tracer(*this, {4, 0.0, true});
+        Tracer tracer(*this, {4, 0.0, true, settings_.of});
         Pixel unused;
         for (int x = 0; x < n; ++x) tracer.primary(0.5 + x * step_x, 0.5 + y * step_y, unused);
         rows[static_cast<std::size_t>(y)] = tracer.counts;

@@ -1,4 +1,5 @@
-// The truth: the same scene, camera and shading model, rendered classically on the exact polygons.
+// The truth: the same scene, camera and shading model, rendered classically, on the exact polygons or on
+// spheres and cones as such.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 #include "model/geometry/placement.hpp"
 #include "model/picture/picture.hpp"
 #include "model/shading/shading.hpp"
-#include "model/truth/polygon_index.hpp"
+#include "model/truth/surface_index.hpp"
 
 namespace raycell {
 
@@ -22,13 +23,14 @@ struct TruthSettings {
     /// SPD's rules 8 and 9: a transmitting surface always sends one reflected ray, whatever its Ks, and on
     /// total internal reflection no other.
     bool transmitters_reflect = false;
+    TruthOf of = TruthOf::polygons;
 };
 
 struct TruthHit {
     double t = 0;                        ///< distance from the ray's origin, cell widths
-    std::uint32_t polygon = no_polygon;  ///< its id
-    std::size_t index = 0;               ///< its place in CellScene::polygons
-    dvec3 position{0, 0, 0};             ///< cell coordinates
+    std::uint32_t polygon = no_polygon;  ///< its id; of a curved surface its first polygon's
+    std::size_t index = 0;    ///< its place in CellScene::polygons; beyond them: number in Surfaces
+    dvec3 position{0, 0, 0};  ///< cell coordinates
 };
 
 /// Rays sent, in the terms of the Standard Procedural Databases (Haines 1987).
@@ -44,7 +46,8 @@ TruthCounts& operator+=(TruthCounts& sum, const TruthCounts& more);
 /// Whitted's ray tracer over the whole, unclipped scene (design, section 7). All methods are const and
 /// thread-safe; directions are unit, coordinates those of cells.
 ///
-/// A ray never hits the polygon that it leaves (`exclude`, no_polygon for none), and nothing nearer than
+/// A ray never hits the polygon that it leaves (`exclude`, no_polygon for none), nor a curved surface in the
+/// point where it leaves that, and nothing nearer than
 /// `nearest_hit`; so it starts exactly at the hit point, without an offset.
 class TruthRenderer {
   public:
@@ -52,7 +55,7 @@ class TruthRenderer {
     using Progress = std::function<void(int, int)>;
 
     /// Keeps a reference: the scene must outlive the renderer and stay unchanged.
-    /// Throws std::invalid_argument for what PolygonIndex rejects, an object that doesn't exist, more than
+    /// Throws std::invalid_argument for what SurfaceIndex rejects, an object that doesn't exist, more than
     /// max_sources sources, or a negative max_depth.
     explicit TruthRenderer(const CellScene& scene, const TruthSettings& settings = {});
     explicit TruthRenderer(const CellScene&&, const TruthSettings& = {}) = delete;
@@ -85,7 +88,8 @@ class TruthRenderer {
 
     const CellScene& scene_;
     TruthSettings settings_;
-    PolygonIndex index_;
+    Surfaces surfaces_;
+    SurfaceIndex index_;
 };
 
 }  // namespace raycell

@@ -17,6 +17,7 @@ namespace {
 struct TruthOptions : RenderOptions {
     bool clip = false;
     int count = 0;
+    TruthOf of = TruthOf::polygons;
 };
 
 TruthRenderer::Progress progress_for(const TruthOptions& options) {
@@ -44,7 +45,8 @@ int run(const TruthOptions& options, const OptionTable& table) {
     }
     CellScene scene = read_and_place(options, outputs);
     if (options.clip) scene = clip_scene(scene);
-    const TruthRenderer truth(scene, {options.picture.max_depth, options.picture.min_weight});
+    const TruthRenderer truth(scene,
+                              {options.picture.max_depth, options.picture.min_weight, false, options.of});
     if (options.count > 0) return print_counts(options, truth);
     const auto start = std::chrono::steady_clock::now();
     const Picture picture = truth.render(0, progress_for(options));
@@ -74,6 +76,8 @@ Command add_truth_command(CLI::App& program) {
                     "options from a file that truth or render wrote; the command line has precedence")
         ->type_name("FILE");
     add_scene_options(*table, *options);
+    table->choice("truth-of", options->of, {{"polygons", TruthOf::polygons}, {"scene", TruthOf::scene}},
+                  "what is rendered: the polygons that the machine loads, or spheres and cones as such");
     table->flag("clip", options->clip, "clip the scene to the cube");
     table->number(
         "count", options->count, 0, 8193,
