@@ -183,21 +183,41 @@ Json model_report(const Run& run) {
 
 const std::vector<std::string> truth_suffixes = {".truth.exr", ".truth.png", ".difference.png"};
 
+/// How far the picture, and the polygons' truth, are from the scene itself: its spheres and cones as such.
+/// Which polygon is hit first is no question there.
+void add_scene_truth(const CellScene& scene, const TruthSettings& tree, const Picture& picture,
+                     const Picture& polygons, const TruthRenderer::Progress& progress, Json& accuracy) {
+    const bool curved = !scene.curved.empty();
+    const Picture itself =
+        curved ? TruthRenderer(scene, {tree.max_depth, tree.min_weight, false, TruthOf::scene})
+                     .render(0, progress)
+               : Picture();
+    for (const auto& [name, from] : {std::pair("scene", &picture), std::pair("tessellation", &polygons)}) {
+        Json part = report(*from, curved ? itself : polygons);
+        part.erase("wrong_hit_percent");
+        accuracy[name] = std::move(part);
+    }
+}
+
 /// Renders the truth beside the picture and reports how far apart they are. Throws Interrupted.
 Json render_truth(const RenderOptions& options, const CellScene& scene, const Picture& picture,
                   OutputSet& outputs) {
     const CellScene clipped = options.clip_truth ? clip_scene(scene) : scene;
-    const TruthRenderer truth(clipped, {options.picture.max_depth, options.picture.min_weight});
+    const TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
+    const TruthRenderer truth(clipped, tree);
     const bool progress = shows_progress(options);
-    const Picture exact = truth.render(0, [&](int done, int all) {
+    const TruthRenderer::Progress tell = [&](int done, int all) {
         stop_if_interrupted();
         if (progress) std::cerr << "\rtruth: row " << done << " of " << all << std::flush;
-    });
+    };
+    const Picture exact = truth.render(0, tell);
+    Json accuracy = report(picture, exact);
+    add_scene_truth(clipped, tree, picture, exact, tell, accuracy);
     if (progress) end_progress();
     outputs.write(truth_suffixes[0], [&](NewFile& file) { write_exr(exact, file); });
     outputs.write(truth_suffixes[1], [&](NewFile& file) { write_png(exact, file); });
     outputs.write(truth_suffixes[2], [&](NewFile& file) { write_png(difference(picture, exact), file); });
-    return report(picture, exact);
+    return accuracy;
 }
 
 /// Compares a sample of the picture's pixels with the truth; only this shows that words are too short for a
