@@ -1,6 +1,14 @@
 #include "model/truth/exterior.hpp"
 
+#include <stdexcept>
+
 namespace raycell {
+
+ClassicalExterior::ClassicalExterior(const CellScene& scene, const TruthRenderer& truth)
+    : scene_(scene), truth_(truth) {
+    if (truth.of() != TruthOf::polygons)
+        throw std::invalid_argument("the exterior goes on with the machine's polygons");
+}
 
 dvec3 ClassicalExterior::radiance(const ExteriorRequest& request, const Ray& ray, Pixel* pixel) const {
     if (ray.kind == RayKind::primary && pixel) {

@@ -10,8 +10,8 @@ namespace raycell {
 class ClassicalExterior : public ExteriorTracer {
   public:
     /// The renderer must have been made from this scene, with the settings of the machine's ray tree; both
-    /// must outlive this object.
-    ClassicalExterior(const CellScene& scene, const TruthRenderer& truth) : scene_(scene), truth_(truth) {}
+    /// must outlive this object. Throws std::invalid_argument for one that does not render polygons.
+    ClassicalExterior(const CellScene& scene, const TruthRenderer& truth);
     dvec3 radiance(const ExteriorRequest& request, const Ray& ray, Pixel* pixel) const override;
     bool blocked(const ExteriorRequest& request, const Ray& ray) const override;
 

@@ -74,6 +74,9 @@ class TruthRenderer {
     dvec3 radiance(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, int generation,
                    double weight, TruthCounts* counts = nullptr) const;
 
+    /// What it renders.
+    TruthOf of() const { return settings_.of; }
+
     /// One primary ray through every pixel's centre. cycle and hops stay 0. The picture is the same, bit for
     /// bit, for any number of threads (0: as many as the processor has).
     Picture render(int threads = 0, const Progress& progress = {}) const;
