@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -88,8 +89,10 @@ class Folder {
   public:
     Folder() {
         const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        path_ = std::filesystem::temp_directory_path() /
-                ("raycell_" + std::to_string(getpid()) + "_" + info->test_suite_name() + "_" + info->name());
+        std::string name =
+            "raycell_" + std::to_string(getpid()) + "_" + info->test_suite_name() + "_" + info->name();
+        std::replace(name.begin(), name.end(), '/', '_');  // in names of tests with parameters
+        path_ = std::filesystem::temp_directory_path() / name;
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }
