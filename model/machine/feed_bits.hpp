@@ -15,7 +15,7 @@ struct FeedBits {
 /// Depth of the buffers between two stages before the rows, messages.
 constexpr int feed_link_depth = 4;
 
-/// A polygon is taken to have four corners; one with more goes through the buffers in parts.
+/// Buffers are those of polygons with four corners; for one with more corners they would have to be wider.
 FeedBits feed_bits(const PictureSettings& picture, const MachineSettings& machine, const Formats& formats);
 
 }  // namespace raycell
