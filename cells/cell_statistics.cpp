@@ -20,6 +20,7 @@ CellStatistics Cell::statistics(Cycle now) const {
     const Remaining to_come = remaining(now);
     sum.traversal_cycles -= to_come.traversal;
     sum.shading_cycles -= to_come.shading;
+    if (loading_.made() > now) sum.loading_cycles -= loading_.made() - now;
     sum.slot_cycles += ray_store_.waiting_cycles(now);
     const auto add = [&](const Wait& wait) {
         if (wait.cause != Stall::none && now > wait.since) sum.stalls[wait.cause] += now - wait.since;

@@ -47,8 +47,9 @@ class StallCycles {
     std::array<std::uint64_t, stall_causes> cycles_{};
 };
 
-/// Counters of a cell over precast and trace (load_hops, loading_cycles: over loading). They are sums, so the order of cells
-/// does not matter. The counters of every hop and the most frequent causes come first, in one cache line.
+/// Counters of a cell over precast and trace (load_hops, loading_cycles: over loading). They are sums, so the
+/// order of cells does not matter. The counters of every hop and the most frequent causes come first, in one
+/// cache line.
 struct CellStatistics {
     std::uint64_t ray_hops = 0;     ///< rays sent to neighbours
     std::uint64_t return_hops = 0;  ///< answers sent, and rays sent over the array's border
@@ -58,7 +59,7 @@ struct CellStatistics {
     std::uint64_t postponed = 0;  ///< rays destroyed here for lack of a slot
     std::uint64_t shading_cycles = 0;
     std::uint64_t loading_cycles = 0;  ///< of making voxels
-    std::uint64_t slot_cycles = 0;  ///< summed over slots: cycles in which each was taken
+    std::uint64_t slot_cycles = 0;     ///< summed over slots: cycles in which each was taken
 };
 
 }  // namespace raycell

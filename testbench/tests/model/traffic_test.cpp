@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "../property.hpp"
+#include "model/machine/feed_bits.hpp"
 #include "model/machine/storage_bits.hpp"
 #include "model/machine/untimed.hpp"
 
@@ -306,6 +307,31 @@ TEST(StorageBits, OfBuffersFollowTheNetworks) {
         EXPECT_EQ(bits(networks, 1).answer_buffers, 4 * messages.intensity);
         EXPECT_EQ(bits(networks, 3).buffers(), 3 * bits(networks, 1).buffers());
     }
+}
+
+TEST(FeedBits, AreThoseOfLanesAndRows) {
+    Sized sized;  // 128x128 cells, buffers of 1, links of 20 bits
+    sized.machine.feed_lanes = 2;
+    sized.machine.feed_bits = 100;
+    const int polygon = 3 + 20 + 147 + 324 + 16 + 4 * 108;  // id, plane and slack, normals, count, corners
+    const int trapeze = 501;                                // a surface; a trapeze has 466
+    const FeedBits bits = feed_bits(sized.picture, sized.machine, sized.formats);
+    EXPECT_EQ(bits.buffers, 2 * 4 * (polygon + trapeze) + 126 * trapeze + 128 * 943);
+    EXPECT_EQ(bits.registers, 2 * (2 * polygon + trapeze) + 128 * (501 + trapeze + 943));
+    EXPECT_EQ(bits.wires, (2 * 2 + 126) * 100 + 128 * 20);
+    EXPECT_EQ(bits.total(), bits.buffers + bits.registers);
+}
+
+TEST(FeedBits, OfMoreLanesThanRowsAreThoseOfALaneForEachRow) {
+    Sized sized;
+    sized.picture.width = sized.picture.height = 8;
+    const auto bits = [&](int lanes) {
+        sized.machine.feed_lanes = lanes;
+        return feed_bits(sized.picture, sized.machine, sized.formats);
+    };
+    EXPECT_EQ(bits(4096).total(), bits(8).total());
+    EXPECT_EQ(bits(4096).wires, 8 * 2 * sized.machine.feed_bits + 8 * 20);
+    EXPECT_GT(bits(8).total(), bits(7).total());
 }
 
 TEST(StorageBits, OfASlotAreThoseOfTheTable) {

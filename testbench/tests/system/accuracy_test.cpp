@@ -90,6 +90,42 @@ TEST(TruthBeside, TheTimedMachineReportsTheSameAccuracyAsTheUntimedOne) {
     }
 }
 
+double psnr(const Json& accuracy) { return accuracy.at("psnr_db").get<double>(); }
+
+TEST(TruthOfTheScene, IsThatOfItsPolygonsUnlessAnythingIsCurved) {
+    const Workshop workshop;
+    const Words words = {"--cells", "48x48", "--engine", "untimed", "--truth"};
+    const Json flat = workshop.report(own_scene("cornell.nff"), words);
+    const Json curved = workshop.report(own_scene("still_life.nff"), words);
+    ASSERT_FALSE(flat.is_null() || curved.is_null());
+    EXPECT_EQ(psnr(flat.at("accuracy").at("tessellation")), 200);
+    EXPECT_EQ(psnr(flat.at("accuracy").at("scene")), psnr(flat.at("accuracy")));
+    const double polygons = psnr(curved.at("accuracy").at("tessellation"));
+    EXPECT_GT(polygons, 30);
+    EXPECT_LT(polygons, 50);
+    EXPECT_NEAR(psnr(curved.at("accuracy").at("scene")), polygons, 1) << "polygons cost more than words";
+    Words finer = words;
+    finer.insert(finer.end(), {"--chord-error", "0.005"});
+    const Json close = workshop.report(own_scene("still_life.nff"), finer);
+    EXPECT_GT(psnr(close.at("accuracy").at("tessellation")), polygons + 5);
+}
+
+TEST(TruthOfTheScene, IsAskedForByName) {
+    const Workshop workshop;
+    const auto picture = [&](const std::string& scene, const Words& more) {
+        const Words words =
+            joined({"truth", own_scene(scene).string(), "--cells", "32x32", "-o", "results/t"}, more);
+        EXPECT_EQ(workshop.run(words).exit_code, 0);
+        return image_hash(read_exr(workshop.result("t.exr").string()));
+    };
+    EXPECT_EQ(picture("cornell.nff", {"--truth-of", "scene"}), picture("cornell.nff", {}));
+    EXPECT_NE(picture("still_life.nff", {"--truth-of", "scene"}), picture("still_life.nff", {}));
+    EXPECT_EQ(picture("still_life.nff", {"--truth-of", "polygons"}), picture("still_life.nff", {}));
+    EXPECT_NE(picture("still_life.nff", {"--truth-of", "scene", "--clip"}),
+              picture("still_life.nff", {"--truth-of", "scene"}))
+        << "curved surfaces are clipped, too";
+}
+
 TEST(TruthBeside, IsThePictureThatTruthRendersAlone) {
     const Workshop workshop;
     const Json report = workshop.report(own_scene("cornell.nff"), {"--cells", "24x32", "--truth"});

@@ -11,6 +11,10 @@ const char* const keys[] = {
     "/config",
     "/pixels/all",
     "/pixels/completed",
+    "/bound/load/cycles",
+    "/bound/trace/of",
+    "/feed_bits/wires",
+    "/load_queue/peak",
     "/storage_bits/ray_buffers",
     "/storage_bits/answer_buffers",
     "/storage_bits/slot",
@@ -165,6 +169,16 @@ void expect_bounds(const Json& report) {
     EXPECT_EQ(count(report.at("storage_bits"), "ray_store"),
               count(report.at("storage_bits"), "slot") * count(store, "capacity"));
     expect_sums(report.at("storage_bits"));
+    const Json& cycles_of = report.at("cycles");
+    EXPECT_LE(count(report.at("bound").at("load"), "cycles"), count(cycles_of, "load"));
+    EXPECT_LE(count(report.at("bound").at("trace"), "cycles"),
+              count(cycles_of, "precast") + count(cycles_of, "trace"));
+    for (const auto& bound : report.at("bound"))
+        EXPECT_EQ(bound.at("of") == "nothing", bound.at("cycles") == 0) << bound;
+    const Json& feed = report.at("feed_bits");
+    EXPECT_EQ(count(feed, "total"), count(feed, "buffers") + count(feed, "registers"));
+    EXPECT_GE(count(report.at("load_queue"), "max_bits_per_cell"),
+              count(report.at("voxels"), "max_bits_per_cell"));
     EXPECT_LE(count(store, "peak"), count(store, "capacity"));
     EXPECT_LE(store.at("mean").get<double>(), store.at("capacity").get<double>());
     for (const auto& peak : report.at("buffers").at("peak")) {
