@@ -1,5 +1,4 @@
 """Runs scenes with the cycles of each datapath and writes what that makes of a frame, and which units bind it."""
-import argparse
 import csv
 import json
 import sys
@@ -78,14 +77,7 @@ def draw(out, results):
 
 
 def main(root, words):
-    parser = argparse.ArgumentParser(prog="scripts/study datapaths", description=__doc__)
-    parser.add_argument("folder", nargs="?", metavar="SCENE_FOLDER", help="of the SPD scenes")
-    programs.add_out(parser, root)
-    options = parser.parse_args(words)
-    folder = programs.spd_folder("datapaths", root, options.folder)
-    scenes = {s: folder / f"{s}.nff" if s != "still_life" else root / "scenes" / "still_life.nff" for s in SCENES}
-    out = programs.made(options.out)
-    cache = programs.cache_of(root, out, "datapaths")
+    scenes, out, cache = programs.scene_study("datapaths", root, words, __doc__, SCENES)
     jobs = [(s, d) for s in SCENES for d in DATAPATHS]
     results = programs.on_all_cores(lambda *job: run(root, scenes, cache, *job), jobs)
     for scene in SCENES:  # a picture hangs on no cost

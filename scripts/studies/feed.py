@@ -1,5 +1,4 @@
 """Loads scenes over feeds of other widths, numbers of lanes and queues of spans in the cells, and writes the cycles of loading."""
-import argparse
 import json
 import sys
 
@@ -60,14 +59,7 @@ def bound_table(results, bounds):
 
 
 def main(root, words):
-    parser = argparse.ArgumentParser(prog="scripts/study feed", description=__doc__)
-    parser.add_argument("folder", nargs="?", metavar="SCENE_FOLDER", help="of the SPD scenes")
-    programs.add_out(parser, root)
-    options = parser.parse_args(words)
-    folder = programs.spd_folder("feed", root, options.folder)
-    scenes = {s: folder / f"{s}.nff" if s != "still_life" else root / "scenes" / "still_life.nff" for s in SCENES}
-    out = programs.made(options.out)
-    cache = programs.cache_of(root, out, "feed")
+    scenes, out, cache = programs.scene_study("feed", root, words, __doc__, SCENES)
     jobs = [(s, f) for s in SCENES for f in FEEDS]
     results = programs.on_all_cores(lambda *job: run(root, scenes, cache, *job), jobs)
     bounds = programs.on_all_cores(lambda scene: bound(root, scenes, cache, scene), [(s,) for s in SCENES])

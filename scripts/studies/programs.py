@@ -1,5 +1,6 @@
 """How a study runs one program to its end and measures its cost. Sweeps, which run many at a time and can be stopped,
 have their own way in sweeps/runs.py."""
+import argparse
 import concurrent.futures
 import dataclasses
 import hashlib
@@ -81,6 +82,19 @@ def on_all_cores(run, jobs):
             print(f"\r{done} of {len(jobs)} runs", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
     return results
+
+
+def scene_study(study, root, words, description, scenes):
+    """What the studies of whole scenes begin with: reads their options, and returns the scenes' files by name, the
+    folder of the tables and the cache of runs."""
+    parser = argparse.ArgumentParser(prog=f"scripts/study {study}", description=description)
+    parser.add_argument("folder", nargs="?", metavar="SCENE_FOLDER", help="of the SPD scenes")
+    add_out(parser, root)
+    options = parser.parse_args(words)
+    folder = spd_folder(study, root, options.folder)
+    files = {s: folder / f"{s}.nff" if s != "still_life" else root / "scenes" / "still_life.nff" for s in scenes}
+    out = made(options.out)
+    return files, out, cache_of(root, out, study)
 
 
 def spd_folder(study, root, folder):
