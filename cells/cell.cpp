@@ -10,13 +10,15 @@ Cell::Cell(Environment& environment, int x, int y)
     : env_(environment),
       x_(std::uint16_t(x)),
       y_(std::uint16_t(y)),
+      traversal_(environment.machine.traversal_units),
       look_to_shade_(false),
       replies_first_(false),
       answer_moved_(false),
       moved_(false),
       blocked_(false),
       ray_store_(environment.machine.ray_store, waiting_generations(environment.context),
-                 environment.machine.slots) {}
+                 environment.machine.slots),
+      loading_(environment.machine.loading_units) {}
 
 void Cell::elaborate() {
     router_.elaborate();
@@ -40,7 +42,7 @@ Cycle Cell::step(Cycle now) {
     }
     if (room_made_) unpark(now);
     // Most steps have little to do: each part is called only when it has work.
-    if (traversal_.packet()) finish_traversal(now);
+    if (!traversal_.idle()) finish_traversal(now);
     if (!shading_.idle()) finish_shading(now);
     answers_moved_ = 0;
     if (aging_.due(now)) move_overdue(now);
@@ -59,7 +61,7 @@ Cycle Cell::step(Cycle now) {
         want(feed_at_);
     }
     move_rays(now);
-    if (!traversal_.packet()) start_traversal(now);
+    if (traversal_.free()) start_traversal(now);
     if (look_to_shade_ && shading_.idle()) start_shading(now);
     time_out_.step(moved_, blocked_ || router_.parked(), now, env_.wait_counts);
     return wakeup_.next;
@@ -114,13 +116,13 @@ std::uint32_t Cell::unit_cycles(std::uint32_t cycles) {
 }
 
 void Cell::finish_traversal(Cycle now) {
-    if (traversal_.finish(now, wakeup_)) decided_ |= bit_of(traversal_.place());
+    traversal_.finish(now, wakeup_, [&](std::uint32_t place) { decided_ |= bit_of(place); });
 }
 
-/// The next untested ray, round robin over the places.
+/// The next untested rays, round robin over the places, until no unit is free.
 void Cell::start_traversal(Cycle now) {
     const std::size_t slots = slot_places();
-    std::uint32_t inputs = occupied() & ~decided_;
+    std::uint32_t inputs = occupied() & ~decided_ & ~bits_in_test();
     if (inputs == 0 && slots == 0) return;
     // Places of slots come last, so the round is: inputs from next() on, slots, inputs before next(). The
     // number of slots is read last, because it lies in another cache line.
@@ -128,33 +130,31 @@ void Cell::start_traversal(Cycle now) {
     const std::size_t next = traversal_.next();
     const std::size_t start = next < first_slot || next < place_count() ? next : 0;
     const std::uint32_t before = start < first_slot ? inputs & ((1U << start) - 1) : inputs;
-    for (inputs &= ~before; inputs; inputs &= inputs - 1) {
-        if (test_at(std::size_t(__builtin_ctz(inputs)), now)) return;
-    }
-    for (std::size_t i = std::max(start, first_slot); i < first_slot + slots; ++i) {
-        if (test_at(i, now)) return;
-    }
-    for (inputs = before; inputs; inputs &= inputs - 1) {
-        if (test_at(std::size_t(__builtin_ctz(inputs)), now)) return;
-    }
-    for (std::size_t i = first_slot; i < std::min(start, first_slot + slots); ++i) {
-        if (test_at(i, now)) return;
-    }
+    const auto test_inputs = [&](std::uint32_t bits) {
+        for (; bits && traversal_.free(); bits &= bits - 1) test_at(std::size_t(__builtin_ctz(bits)), now);
+    };
+    const auto test_slots = [&](std::size_t from, std::size_t to) {
+        for (; from < to && traversal_.free(); ++from) test_at(from, now);
+    };
+    test_inputs(inputs & ~before);
+    test_slots(std::max(start, first_slot), first_slot + slots);
+    test_inputs(before);
+    test_slots(first_slot, std::min(start, first_slot + slots));
 }
 
-bool Cell::test_at(std::size_t place, Cycle now) {
+/// Tests the ray at a place, if there is one that is not tested yet. A unit must be free.
+void Cell::test_at(std::size_t place, Cycle now) {
     RayPacket* packet = packet_at(place);
-    if (!packet || packet->stage != RayPacket::Stage::untested) return false;
+    if (!packet || packet->stage != RayPacket::Stage::untested) return;
     settle(wait_of(*packet, place), packet->ray.id, now);
     packet->wait.cause = Stall::none;
     const std::uint32_t cycles = unit_cycles(
-        TraversalUnit::test(*packet, {store_, runs_, env_.context, env_.classes, x_, y_}, env_.costs()));
+        TraversalUnits::test(*packet, {store_, runs_, env_.context, env_.classes, x_, y_}, env_.costs()));
     meter_.tested(env_.meters.counters, packet->visit, cycles);
     traversal_.start(*packet, std::uint32_t(place), now + cycles);
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,
            std::uint32_t(packet->visit.event));
-    want(traversal_.done());
-    return true;
+    want(now + cycles);
 }
 
 // ---- routing
@@ -358,7 +358,7 @@ void Cell::end_silently(RayPacket& packet, std::size_t place, Cycle now) {
 }
 
 bool Cell::busy() const {
-    return traversal_.packet() || !shading_.idle() || ray_store_.used() > 0 || injector_.unfinished();
+    return !traversal_.idle() || !shading_.idle() || ray_store_.used() > 0 || injector_.unfinished();
 }
 
 }  // namespace raycell

@@ -72,8 +72,8 @@ class alignas(64) Cell final : public Client {
     void restore(const Loading& loading) { meter_.restore(loading.hash, loading.hops, loading.cycles); }
     /// Counters of the cell so far; waits and operations still going on count up to cycle `now`.
     CellStatistics statistics(Cycle now) const;
-    /// Cycles that the units' current operations still need; statistics counted them in full when the
-    /// operations began.
+    /// Cycles that the units' current operations still need, those of several units added; statistics counted
+    /// them in full when the operations began.
     struct Remaining {
         Cycle traversal = 0;
         Cycle shading = 0;
@@ -89,9 +89,9 @@ class alignas(64) Cell final : public Client {
     Link* input(Side side) const { return inputs_.link(side); }
     Link* output(Side side) const { return router_.link(side); }
     Link* load_input() const { return load_in_; }
-    const TraversalUnit& traversal() const { return traversal_; }
+    const TraversalUnits& traversal() const { return traversal_; }
     const ShadingUnit& shading() const { return shading_; }
-    const LoadingUnit& loading_unit() const { return loading_; }
+    const LoadingUnits& loading_unit() const { return loading_; }
     const Injector& injector() const { return injector_; }
     bool is_home(const Answer& answer) const { return answer.home_x == x_ && answer.home_y == y_; }
     /// The side over which an answer leaves: along x first, then along y.
@@ -201,12 +201,16 @@ class alignas(64) Cell final : public Client {
     std::uint32_t occupied() const {
         return inputs_.with_rays(pending_) | std::uint32_t(injector_.ray() != nullptr) << own_place();
     }
-    bool test_at(std::size_t place, Cycle now);
+    void test_at(std::size_t place, Cycle now);
     /// The bit of a ray input or of the own ray in decided_, pending_ and the router's words; 0 for a slot's
     /// place.
     std::uint32_t bit_of(std::size_t place) const { return place <= own_place() ? 1U << unsigned(place) : 0; }
     void unpark(Cycle now);
-    std::uint32_t bit_in_test() const { return traversal_.packet() ? bit_of(traversal_.place()) : 0; }
+    std::uint32_t bits_in_test() const {
+        std::uint32_t bits = 0;
+        for (std::size_t i = 0; i < traversal_.busy(); ++i) bits |= bit_of(traversal_[i].place);
+        return bits;
+    }
 
     static_assert(AgingArbiter::others == 1U << (InputPorts::answer_bits - 1) &&
                   InputPorts::most_ray_inputs + 1 < InputPorts::answer_bits);  // no place has this bit
@@ -223,7 +227,7 @@ class alignas(64) Cell final : public Client {
     // wires; room_made_ has a bit per output whose far buffer got room since a message parked on it.
     std::uint32_t decided_ = 0;  ///< bits of rays whose test is over
 
-    TraversalUnit traversal_;
+    TraversalUnits traversal_;
     Cycle feed_at_ = never;  ///< first cycle in which a slot may have a child to send
     AgingArbiter aging_;
     std::uint16_t replies_ = 0;       ///< replies that want to leave
@@ -251,7 +255,7 @@ class alignas(64) Cell final : public Client {
     RayStore ray_store_;
     std::uint64_t operations_ = 0;      ///< of the units so far, for their random stalls
     std::vector<std::uint64_t> asked_;  ///< memo: per voxel, sources already asked for
-    LoadingUnit loading_;
+    LoadingUnits loading_;
     Link* load_in_ = nullptr;
 };
 

@@ -10,9 +10,12 @@ void Cell::add_stall(const Wait& wait, std::uint64_t ray, Cycle now) {
 }
 
 Cell::Remaining Cell::remaining(Cycle now) const {
-    const bool tests = traversal_.packet() && traversal_.done() > now;
-    const bool shades = !shading_.idle() && shading_.done() > now;
-    return {tests ? traversal_.done() - now : 0, shades ? shading_.done() - now : 0};
+    Remaining remaining;
+    for (std::size_t i = 0; i < traversal_.busy(); ++i) {
+        if (traversal_[i].done > now) remaining.traversal += traversal_[i].done - now;
+    }
+    if (!shading_.idle() && shading_.done() > now) remaining.shading = shading_.done() - now;
+    return remaining;
 }
 
 CellStatistics Cell::statistics(Cycle now) const {
@@ -20,7 +23,7 @@ CellStatistics Cell::statistics(Cycle now) const {
     const Remaining to_come = remaining(now);
     sum.traversal_cycles -= to_come.traversal;
     sum.shading_cycles -= to_come.shading;
-    if (loading_.made() > now) sum.loading_cycles -= loading_.made() - now;
+    sum.loading_cycles -= loading_.to_make(now);
     sum.slot_cycles += ray_store_.waiting_cycles(now);
     const auto add = [&](const Wait& wait) {
         if (wait.cause != Stall::none && now > wait.since) sum.stalls[wait.cause] += now - wait.since;

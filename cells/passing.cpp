@@ -67,43 +67,44 @@ void send_feed(LinkOut& out, LoadItem& item, Environment& environment) {
 namespace {
 
 /// Counts a cell's spans kept, and the bits of its memory of voxels: voxels that are made, and spans that
-/// wait. The span at work stands in a register. Each span kept is taken to make a voxel: the last ones
-/// stored.
-void count_kept(Environment& environment, const CellStore& store, int kept) {
+/// wait. Those at work stand in registers, one for each unit. Each span kept is taken to make a voxel: the
+/// last ones stored.
+void count_kept(Environment& environment, const CellStore& store, int kept, int units) {
     Counters& all = environment.meters.counters;
     all.most_kept = std::max(all.most_kept, std::uint64_t(kept));
     const std::size_t made = store.voxels.size() - std::min(store.voxels.size(), std::size_t(kept));
     const std::uint64_t edges =
         made < store.voxels.size() ? store.voxels[made].first_edge : store.edges.size();
-    const std::uint64_t bits = made * std::uint64_t(environment.voxel_bits.base) +
-                               edges * std::uint64_t(environment.voxel_bits.per_edge) +
-                               std::uint64_t(kept - 1) * std::uint64_t(environment.kept_span_bits);
+    const std::uint64_t bits =
+        made * std::uint64_t(environment.voxel_bits.base) +
+        edges * std::uint64_t(environment.voxel_bits.per_edge) +
+        std::uint64_t(std::max(kept - units, 0)) * std::uint64_t(environment.kept_span_bits);
     all.most_load_bits = std::max(all.most_load_bits, bits);
 }
 
 }  // namespace
 
-std::optional<LoadItem::Kind> pass_load(LoadingUnit& unit, LinkIn& from, LinkOut* east, CellStore& store,
+std::optional<LoadItem::Kind> pass_load(LoadingUnits& unit, LinkIn& from, LinkOut* east, CellStore& store,
                                         Environment& environment, CellMeter& meter, int x, Wakeup& wakeup) {
     const Cycle now = environment.scheduler.now();
     if (unit.closes(now, wakeup)) meter.loaded(environment.meters.counters, now);
     LoadItem* item = unit.work(from, x, environment.costs(), now, wakeup);
     if (!item) return std::nullopt;
     const LoadItem::Kind kind = item->kind;
-    const bool makes = LoadingUnit::makes_voxel(*item, x);
+    const bool makes = LoadingUnits::makes_voxel(*item, x);
     const Cycle making = environment.costs().load_voxel(environment.context.settings.hit);
     if (makes && !unit.has_room(environment.machine.load_queue, making, now, wakeup)) return std::nullopt;
     // Asked before take(), which advances a span to the next column.
-    const bool ends = LoadingUnit::ends_at(*item, x, environment.width());
+    const bool ends = LoadingUnits::ends_at(*item, x, environment.width());
     if (!ends && !east->can_send(0, wakeup.next)) return std::nullopt;
     meter.load_passed(environment.meters.counters, ends);
-    LoadingUnit::take(*item, x, store, environment.context);
+    LoadingUnits::take(*item, x, store, environment.context);
     from.pop(0);
     unit.finish();
     if (makes) {
         unit.keep(making, now);
         meter.kept(making);
-        count_kept(environment, store, unit.kept(making, now));
+        count_kept(environment, store, unit.kept(making, now), unit.count());
         environment.scheduler.sample_at(unit.made(), unit.made());
     } else if (kind == LoadItem::Kind::end_of_scene) {
         unit.close();

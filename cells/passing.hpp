@@ -58,7 +58,7 @@ void end_primary(const Answer& answer, Injector& injector, Environment& environm
 /// One cycle of loading in column x: works on the oldest message of `from`, stores its voxel in `store` if it
 /// makes one, and passes it on over `east` (null at the array's border). Returns the kind of the message if
 /// its work ended in this cycle.
-std::optional<LoadItem::Kind> pass_load(LoadingUnit& unit, LinkIn& from, LinkOut* east, CellStore& store,
+std::optional<LoadItem::Kind> pass_load(LoadingUnits& unit, LinkIn& from, LinkOut* east, CellStore& store,
                                         Environment& environment, CellMeter& meter, int x, Wakeup& wakeup);
 
 }  // namespace raycell

@@ -50,9 +50,9 @@ std::string name_of(const Binding& b) {
         case Unit::cell_link:
             return std::string("link ") + name_of(b.side) + " of " + cell_of(b);
         case Unit::loading_unit:
-            return "loading unit of " + cell_of(b);
+            return "loading units of " + cell_of(b);
         case Unit::traversal_unit:
-            return "traversal unit of " + cell_of(b);
+            return "traversal units of " + cell_of(b);
         case Unit::shading_unit:
             return "shading unit of " + cell_of(b);
         case Unit::exterior:
@@ -81,7 +81,9 @@ Binding binding_of_load(const MachineParts& parts) {
     }
     consider_links_between_cells(parts, most);
     for (const Cell& cell : parts.array.cells()) {
-        const Cycle cycles = cell.statistics(parts.scheduler.now()).loading_cycles;
+        // The mean of the cell's units, which take voxels in turn.
+        const Cycle cycles = cell.statistics(parts.scheduler.now()).loading_cycles /
+                             Cycle(parts.environment.machine.loading_units);
         most.consider({Unit::loading_unit, cell.x(), cell.y(), Side::east, cycles});
     }
     return most;
@@ -91,9 +93,10 @@ Binding binding_of_trace(const MachineParts& parts) {
     Binding most;
     const Cycle now = parts.scheduler.now();
     consider_links_between_cells(parts, most);
+    const Cycle units = Cycle(parts.environment.machine.traversal_units);
     for (const Cell& cell : parts.array.cells()) {
         const CellStatistics s = cell.statistics(now);
-        most.consider({Unit::traversal_unit, cell.x(), cell.y(), Side::east, s.traversal_cycles});
+        most.consider({Unit::traversal_unit, cell.x(), cell.y(), Side::east, s.traversal_cycles / units});
         most.consider({Unit::shading_unit, cell.x(), cell.y(), Side::east, s.shading_cycles});
     }
     if (!parts.exterior) return most;

@@ -212,10 +212,10 @@ Wants CellWaits::wants_load() const {
         return Wants::nothing("the end of the cell's work");
     const Cycle making = env_.costs().load_voxel(env_.context.settings.hit);
     Wakeup unused;
-    if (LoadingUnit::makes_voxel(*head.load, cell_.x()) &&
+    if (LoadingUnits::makes_voxel(*head.load, cell_.x()) &&
         !cell_.loading_unit().has_room(env_.machine.load_queue, making, env_.scheduler.now(), unused))
         return Wants::nothing("a place in the cell: voxels before it are being made");
-    if (LoadingUnit::ends_at(*head.load, cell_.x(), env_.width()))
+    if (LoadingUnits::ends_at(*head.load, cell_.x(), env_.width()))
         return Wants::nothing("nothing: it ends here");
     return wants_buffer(map_, *cell_.output(Side::east), 0, "output east");
 }

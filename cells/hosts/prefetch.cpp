@@ -68,7 +68,7 @@ void Prefetch::links(const Cell& cell) {
         buffer(*cell.inputs_.link(Side(side)), cell.inputs_.answer_place(side));
     }
     // A ray will be tested: prefetches the depths with which it is compared.
-    if (cell.occupied() & ~cell.decided_ & ~cell.bit_in_test()) {
+    if (cell.occupied() & ~cell.decided_ & ~cell.bits_in_test()) {
         constexpr std::uint32_t most = 32;
         constexpr std::uint32_t in_line = line / sizeof(DepthRun);
         for (std::uint32_t i = 0; i < std::min(cell.runs_.count, most); i += in_line)
@@ -101,7 +101,8 @@ void Prefetch::outputs(const Cell& cell) const {
         if (packet && packet->need.kind == Need::Kind::output)
             output(cell, packet->need.side, packet->need.index);
     };
-    output_of(cell.traversal_.packet());  // most often its test is over in this step
+    // Most often a test is over in this step.
+    for (std::size_t i = 0; i < cell.traversal_.busy(); ++i) output_of(cell.traversal_[i].packet);
     const std::uint32_t decided = cell.decided_ & ~cell.router_.parked();
     for (std::uint32_t rays = decided; rays; rays &= rays - 1)
         output_of(cell.packet_at(std::size_t(__builtin_ctz(rays))));

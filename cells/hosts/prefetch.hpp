@@ -29,7 +29,7 @@ class Prefetch {
 
   private:
     static constexpr std::size_t line = 64;      // bytes
-    static constexpr std::size_t hot_lines = 7;  // of a cell
+    static constexpr std::size_t hot_lines = 8;  // of a cell
     static std::uint32_t rays_of(const Cell& cell) {
         return cell.inputs_.with_rays(cell.pending_) & ~cell.router_.parked();
     }

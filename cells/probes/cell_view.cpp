@@ -73,8 +73,8 @@ Stall CellView::stall_of(const Slot& slot) const {
 }
 
 UnitView CellView::traversal_unit() const {
-    const RayPacket* packet = cell_.traversal().packet();
-    if (!packet) return {};
+    if (cell_.traversal().idle()) return {};
+    const RayPacket* packet = cell_.traversal()[0].packet;
     const bool compares = !packet->ray.outside && packet->visit.comparisons.runs > 0;
     return {UnitView::State::busy, compares ? UnitView::Operation::compare : UnitView::Operation::walk,
             packet->ray.id};
@@ -101,7 +101,7 @@ UnitView CellView::shading_unit() const {
 
 UnitView CellView::loading_unit() const {
     using Operation = UnitView::Operation;
-    const LoadingUnit& unit = cell_.loading_unit();
+    const LoadingUnits& unit = cell_.loading_unit();
     if (now_ < unit.made()) return {UnitView::State::busy, Operation::make_voxel, UnitView::no_ray};
     if (!unit.item()) return {};
     return {now_ < unit.done() ? UnitView::State::busy : UnitView::State::blocked, Operation::pass_on,

@@ -2,7 +2,7 @@
 
 namespace raycell {
 
-LoadItem* LoadingUnit::work(const LinkIn& from, int x, const CostTable& costs, Cycle now, Wakeup& wakeup) {
+LoadItem* LoadingUnits::work(const LinkIn& from, int x, const CostTable& costs, Cycle now, Wakeup& wakeup) {
     const Message message = from.front(0);
     if (message.kind != Message::Kind::load) return nullptr;
     if (item_ != message.load) {  // just arrived
@@ -14,27 +14,56 @@ LoadItem* LoadingUnit::work(const LinkIn& from, int x, const CostTable& costs, C
     return nullptr;
 }
 
-bool LoadingUnit::has_room(int most, Cycle cycles, Cycle now, Wakeup& wakeup) const {
+namespace {
+
+/// Spans of which one unit makes voxels, the last of them by cycle `made`: they follow each other.
+Cycle kept_by_unit(Cycle made, Cycle cycles, Cycle now) {
+    return made > now ? (made - now + cycles - 1) / cycles : 0;
+}
+
+}  // namespace
+
+int LoadingUnits::kept(Cycle cycles, Cycle now) const {
+    Cycle sum = 0;
+    for (const Cycle made : made_) sum += kept_by_unit(made, cycles, now);
+    return int(sum);
+}
+
+void LoadingUnits::keep(Cycle cycles, Cycle now) {
+    made_[turn_] = std::max(made_[turn_], now) + cycles;
+    turn_ = std::uint8_t(turn_ + 1 == count_ ? 0 : turn_ + 1);
+}
+
+Cycle LoadingUnits::to_make(Cycle now) const {
+    Cycle sum = 0;
+    for (const Cycle made : made_) sum += made > now ? made - now : 0;
+    return sum;
+}
+
+bool LoadingUnits::has_room(int most, Cycle cycles, Cycle now, Wakeup& wakeup) const {
     if (most == 0 || kept(cycles, now) < most) return true;
-    wakeup.at(made_ - Cycle(most - 1) * cycles);
+    for (const Cycle made : made_) {  // the next voxel of each unit
+        const Cycle kept = kept_by_unit(made, cycles, now);
+        if (kept > 0) wakeup.at(made - (kept - 1) * cycles);
+    }
     return false;
 }
 
-bool LoadingUnit::closes(Cycle now, Wakeup& wakeup) {
+bool LoadingUnits::closes(Cycle now, Wakeup& wakeup) {
     if (!closing_) return false;
-    if (now < made_) {
-        wakeup.at(made_);
+    if (now < made()) {
+        wakeup.at(made());
         return false;
     }
     closing_ = false;
     return true;
 }
 
-bool LoadingUnit::ends_at(const LoadItem& item, int x, int width) {
+bool LoadingUnits::ends_at(const LoadItem& item, int x, int width) {
     return item.kind == LoadItem::Kind::span ? item.span.last == x : x + 1 == width;
 }
 
-void LoadingUnit::take(LoadItem& item, int x, CellStore& store, const Context& context) {
+void LoadingUnits::take(LoadItem& item, int x, CellStore& store, const Context& context) {
     // Hardware latches broadcast messages in every cell; the model keeps one copy for all cells.
     if (!makes_voxel(item, x)) return;
     store_voxel(store, item.span, context.settings, context.scene.frame.level(), context.arithmetic);

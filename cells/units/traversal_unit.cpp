@@ -2,7 +2,7 @@
 
 namespace raycell {
 
-std::uint32_t TraversalUnit::test(RayPacket& packet, const Setting& setting, const CostTable& costs) {
+std::uint32_t TraversalUnits::test(RayPacket& packet, const Setting& setting, const CostTable& costs) {
     const Context& context = setting.context;
     packet.visit = visit_cell(setting.store, packet.ray, context, setting.runs);
     packet.need =

@@ -1,15 +1,23 @@
-// The traversal unit (paper, section 4.1): tests one ray at a time against the cell's voxels, and finds what
-// the ray needs next.
+// The traversal units (paper, section 4.1): each tests one ray at a time against the cell's voxels, and finds
+// what the ray needs next.
 #pragma once
+
+#include <array>
 
 #include "cells/channels/message.hpp"
 #include "cells/units/wakeup.hpp"
 #include "model/settings/costs.hpp"
+#include "model/settings/settings.hpp"
 
 namespace raycell {
 
-class TraversalUnit {
+/// The units are alike, and a ray does not depend on which of them tests it: the model keeps the tests that
+/// are going on, in the order in which they began.
+class TraversalUnits {
   public:
+    /// `count`: units of the cell, 1..most_units.
+    explicit TraversalUnits(int count) : count_(std::uint8_t(count)) {}
+
     /// The inputs that all tests of a cell share.
     struct Setting {
         const CellStore& store;
@@ -23,37 +31,50 @@ class TraversalUnit {
     /// Returns the cycles of the test.
     static std::uint32_t test(RayPacket& packet, const Setting& setting, const CostTable& costs);
 
-    /// Starts the test of the ray at `place`; it lasts until cycle `done`.
+    /// Starts the test of the ray at `place` in a free unit; it lasts until cycle `done`.
     void start(RayPacket& packet, std::uint32_t place, Cycle done) {
         packet.stage = RayPacket::Stage::in_test;
-        packet_ = &packet;
-        done_ = done;
-        place_ = place;
+        tests_[busy_++] = {&packet, done, place};
         next_ = place + 1;
     }
-    /// If the test is over, marks the ray as decided, frees the unit and returns true.
-    bool finish(Cycle now, Wakeup& wakeup) {
-        if (now < done_) {
-            wakeup.at(done_);
-            return false;
+    /// Marks the rays whose tests are over as decided, frees their units and calls decided(place) for each.
+    template <typename Decided>
+    void finish(Cycle now, Wakeup& wakeup, const Decided& decided) {
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < busy_; ++i) {
+            const Test test = tests_[i];
+            if (now < test.done) {
+                wakeup.at(test.done);
+                tests_[left++] = test;
+                continue;
+            }
+            test.packet->stage = RayPacket::Stage::decided;
+            test.packet->decided = now;
+            decided(test.place);
         }
-        packet_->stage = RayPacket::Stage::decided;
-        packet_->decided = now;
-        packet_ = nullptr;
-        return true;
+        busy_ = std::uint8_t(left);
     }
 
-    const RayPacket* packet() const { return packet_; }  ///< null: the unit is free
-    Cycle done() const { return done_; }
-    std::uint32_t place() const { return place_; }  ///< of the ray in test, or tested last
+    struct Test {
+        RayPacket* packet = nullptr;
+        Cycle done = 0;
+        std::uint32_t place = 0;
+    };
+    bool idle() const { return busy_ == 0; }
+    bool free() const { return busy_ < count_; }  ///< one at least
+    std::size_t busy() const { return busy_; }
+    /// A test that is going on, 0..busy() - 1: the one that began first comes first.
+    const Test& operator[](std::size_t i) const { return tests_[i]; }
+    /// The test that began last; one must be going on.
+    const Test& last() const { return tests_[busy_ - 1U]; }
     /// The place at which the round robin starts to look for the next ray.
     std::uint32_t next() const { return next_; }
 
   private:
-    RayPacket* packet_ = nullptr;
-    Cycle done_ = 0;
-    std::uint32_t place_ = 0;
     std::uint32_t next_ = 0;
+    std::uint8_t busy_ = 0;
+    std::uint8_t count_;
+    std::array<Test, most_units> tests_;
 };
 
 }  // namespace raycell

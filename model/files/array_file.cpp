@@ -195,6 +195,7 @@ std::uint64_t loading_timing(const MachineSettings& machine) {
     Put<Hasher> put(hasher);
     put.whole(machine.buffer_depth), put.whole(machine.link_bits);
     put.whole(machine.feed_bits), put.whole(machine.feed_lanes), put.whole(machine.load_queue);
+    put.whole(machine.loading_units);
     const CostTable& c = machine.costs;
     for (const std::uint32_t cost : {c.load_depth, c.load_interval, c.load_plane, c.load_mask, c.load_edge,
                                      c.load_forward, c.load_advance, c.geometry_polygon, c.geometry_skip,

@@ -76,7 +76,7 @@ SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machin
 
 namespace {
 
-/// Bits of the traversal unit's registers: nearest hit so far, crossing, the ray's depth run in the cell,
+/// Bits of a traversal unit's registers: nearest hit so far, crossing, the ray's depth run in the cell,
 /// counters over voxels and edges, places of the ray and of the next round's beginning, a point, a sum.
 int traversal_bits(const MachineSettings& machine, const Formats& formats, int ray_inputs) {
     const int distance = formats.distance.bits();
@@ -122,9 +122,9 @@ RegisterBits register_bits(const PictureSettings& picture, const MachineSettings
     bits.ages += 2 * age;
     bits.credits += 2 * side_count * wire_bits(machine, ray);  // those that come in and those that leave
     bits.outputs = side_count * std::max(ray, messages.intensity);
-    bits.traversal = traversal_bits(machine, formats, ray_inputs);
+    bits.traversal = machine.traversal_units * traversal_bits(machine, formats, ray_inputs);
     bits.shading = shading_bits(slot_bits(picture, machine, formats, sources), machine, messages, formats);
-    bits.loading = kept_span_bits(messages);
+    bits.loading = machine.loading_units * kept_span_bits(messages);
     bits.latches = messages.viewer + int(sources) * messages.source;  // the background is the viewer's
     return bits;
 }

@@ -64,6 +64,8 @@ struct PictureSettings {
     NumberSettings numbers;
 };
 
+constexpr int most_units = 4;  ///< of a kind in a cell
+
 /// Settings that only time depends on: by invariant 2 none of them changes the picture.
 struct MachineSettings {
     int ray_store = 8;     ///< M, slots per cell, >= 1
@@ -72,9 +74,13 @@ struct MachineSettings {
     Recovery recovery = Recovery::postpone;
     Slots slots = Slots::reserved;
     int link_bits = 20;  ///< bits that cross a link per cycle, >= 1
-    /// Spans that a cell keeps until their voxels are made, the one at work included, >= 1; 0: no limit. All
-    /// but that one stand in the voxels' memory.
+    /// Spans that a cell keeps until their voxels are made, those at work included, >= 1; 0: no limit. All
+    /// but these stand in the voxels' memory.
     int load_queue = 0;
+    /// Units of a cell that make voxels while the array is loaded, each one at a time, 1..most_units.
+    int loading_units = 1;
+    /// Units of a cell that test rays, each one at a time, 1..most_units.
+    int traversal_units = 1;
     int feed_lanes = 16;  ///< ways from geometry to the rows, >= 1; no more than there are rows are used
     int feed_bits = 128;  ///< bits that cross a link of the feed per cycle, >= 1
     double clock_mhz = 20;

@@ -293,6 +293,10 @@ void add_scene_options(OptionTable& table, RenderOptions& options) {
 void add_link_options(OptionTable& table, MachineSettings& m) {
     table.group("Links and clock");
     table.number("link-bits", m.link_bits, 1, 4096, "bits that cross a link per cycle");
+    table.number("loading-units", m.loading_units, 1, most_units,
+                 "units of a cell that make voxels while the array is loaded, each one at a time");
+    table.number("traversal-units", m.traversal_units, 1, most_units,
+                 "units of a cell that test rays, each one at a time");
     table.number("load-queue", m.load_queue, 0, 65535,
                  "spans that a cell keeps until their voxels are made; 0: no limit");
     table.number("feed-bits", m.feed_bits, 1, 4096,

@@ -148,7 +148,9 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
     const double cell_cycles =
         double(result.precast_cycles + result.trace_cycles) * picture.width * picture.height;
     json["units"] = {
-        {"traversal", {{"utilisation", cell_cycles > 0 ? double(c.traversal_cycles) / cell_cycles : 0.0}}},
+        {"traversal",
+         {{"utilisation",
+           cell_cycles > 0 ? double(c.traversal_cycles) / (cell_cycles * machine.traversal_units) : 0.0}}},
         {"shading", {{"utilisation", cell_cycles > 0 ? double(c.shading_cycles) / cell_cycles : 0.0}}}};
     json["hops"] = {{"load", c.load_hops}, {"ray", c.rays.ray_hops}, {"return", c.rays.return_hops}};
     json["precast"] = {{"hops", result.precast_hops}};

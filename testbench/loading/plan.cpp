@@ -92,6 +92,7 @@ class Planner {
 
     LoadPlan run() {
         plan_.voxel_cycles = costs_.load_voxel(picture_.hit);
+        plan_.loading_units = machine_.loading_units;
         broadcast(Kind::setup, 0, bits_.setup(scene_.sources.size()));
         const std::vector<Polygon>& polygons = scene_.polygons;
         for (std::size_t begin = 0; begin < polygons.size();) {
@@ -390,7 +391,10 @@ LoadPlan::Bound LoadPlan::busiest() const {
     const auto larger = [&](std::uint64_t cycles) { return cycles > most.cycles; };
     for (std::size_t i = 0; i < units.size(); ++i) {
         if (larger(units[i].cycles)) most = {layout.unit_name(i), units[i].cycles};
-        if (larger(units[i].making)) most = {"voxels of " + layout.unit_name(i), units[i].making};
+        const std::uint64_t voxels = units[i].making / std::max<std::uint64_t>(voxel_cycles, 1);
+        const std::uint64_t each = std::uint64_t(loading_units);  // the unit with the most
+        const std::uint64_t cycles = (voxels + each - 1) / each * voxel_cycles;
+        if (larger(cycles)) most = {"voxels of " + layout.unit_name(i), cycles};
     }
     for (std::size_t i = 0; i < links.size(); ++i) {
         if (larger(links[i].cycles)) most = {layout.link_name(i), links[i].cycles};

@@ -16,8 +16,8 @@ namespace raycell::loading {
 struct Need {
     std::uint64_t messages = 0;
     std::uint64_t cycles = 0;  ///< of a cell: looking at messages and passing them on
-    /// Of a cell: making voxels. Goes on beside `cycles`, so the cell needs the larger of the two, not the
-    /// sum.
+    /// Of a cell: making voxels, by all its units. Goes on beside `cycles`, so the cell needs the larger of
+    /// the two, not the sum.
     std::uint64_t making = 0;
     void add(std::uint64_t count, std::uint64_t cycles_each) {
         messages += count;
@@ -38,7 +38,8 @@ struct LoadPlan {
     std::vector<Need> links;
     std::vector<LanePlan> lanes;
     std::vector<std::vector<std::uint64_t>> rows;  ///< digests, for each row's distributor, to the east
-    std::uint32_t voxel_cycles = 0;                ///< in which a cell makes a voxel
+    std::uint32_t voxel_cycles = 0;                ///< in which a unit of a cell makes a voxel
+    int loading_units = 1;                         ///< of a cell
     LoadCounts counts;                             ///< of the scene; voxels and overflow are not counted here
     std::uint64_t sent_polygons = 0;               ///< once for each lane that gets them
     std::uint64_t sent_trapezes = 0;

@@ -30,7 +30,7 @@ Json making(const Loading& l) {
         sum += use.making;
         most_kept = std::max(most_kept, use.most_kept);
     }
-    const double cycles = double(l.result.load_cycles);
+    const double cycles = double(l.result.load_cycles) * double(l.plan.loading_units);
     const double cells = double(layout.units() - layout.cell(0, 0));
     return {{"spans", spans},
             {"busy_cycles", sum},
@@ -148,7 +148,8 @@ Column column(const Loading& l, int x) {
         sum.messages += use.delivered;
         sum.voxels += l.cells[cell - layout.cell(0, 0)]->voxels.size();
         const UnitUse& work = l.watch.units()[cell];
-        sum.busiest_cell = std::max({sum.busiest_cell, work.busy_cycles, work.making});
+        sum.busiest_cell =
+            std::max({sum.busiest_cell, work.busy_cycles, work.making / std::uint64_t(l.plan.loading_units)});
     }
     return sum;
 }

@@ -299,20 +299,26 @@ void LoadWatch::take_into_cell(std::size_t index, const Held& held, Cycle now) {
     latch(index, item, now);
 }
 
-/// The span moves on once the cell has a place for it; its voxel is made after those before it.
+/// The span moves on once the cell has a place for it; its voxel is begun once one of the cell's units is
+/// free.
 void LoadWatch::keep_span(std::size_t index, Cycle now) {
     UnitState& unit = units_[index];
     UnitUse& use = use_[index];
     const Cycle each = plan_.voxel_cycles;
-    if (machine_.load_queue > 0) {
-        const Cycle others = Cycle(machine_.load_queue - 1) * each;  // what may be left to make
-        unit.room = unit.made > others ? unit.made - others : 0;
-    }
+    std::vector<Cycle>& kept = unit.kept;
+    // The cycle in which no more than `left` of the spans kept are left.
+    const auto until = [&](int left) {
+        return kept.size() > std::size_t(left) ? kept[kept.size() - std::size_t(left) - 1] : 0;
+    };
+    if (machine_.load_queue > 0) unit.room = until(machine_.load_queue - 1);
     if (unit.room > unit.ready) use.queue_full += std::min(unit.room, now) - std::min(unit.ready, now);
-    unit.made = std::max(unit.made, now) + each;
+    const Cycle begins = std::max(now, until(machine_.loading_units - 1));
+    kept.push_back(begins + each);
+    kept.erase(kept.begin(), std::upper_bound(kept.begin(), kept.end(), now));
+    unit.made = kept.empty() ? now : kept.back();
     use.making += each;
     ++use.spans;
-    use.most_kept = std::max(use.most_kept, (unit.made - now + each - 1) / each);
+    use.most_kept = std::max(use.most_kept, std::uint64_t(kept.size()));
 }
 
 void LoadWatch::latch(std::size_t index, const LoadItem& item, Cycle now) {

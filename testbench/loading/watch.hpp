@@ -29,7 +29,7 @@ struct UnitUse {
     std::uint64_t queue_full = 0;     ///< of `blocked`, in a cell: it keeps as many spans as it may
     std::uint64_t spans = 0;          ///< kept by a cell until their voxels were made
     std::uint64_t making = 0;         ///< cycles in which a cell made voxels
-    std::uint64_t most_kept = 0;      ///< spans at a time, the one at work included
+    std::uint64_t most_kept = 0;      ///< spans at a time, those at work included
 };
 
 struct LinkUse {
@@ -104,10 +104,11 @@ class LoadWatch : public LoadListener {
         const LoadItem* held = nullptr;  ///< cell: taken in cycle `taken`, to be sent in the same cycle
         std::uint64_t ticket = 0;
         Cycle taken = never;
-        Cycle room = 0;         ///< cell: first cycle in which it could keep the span at hand
-        Cycle made = 0;         ///< cell: cycle in which all voxels of the spans kept are made
-        bool set_up = false;    ///< cell: sources and viewer are known
-        bool finished = false;  ///< cell: has seen the end-of-scene mark
+        std::vector<Cycle> kept;  ///< cell: when the voxels of the spans kept will be made, in order
+        Cycle room = 0;           ///< cell: first cycle in which it could keep the span at hand
+        Cycle made = 0;           ///< cell: cycle in which all voxels of the spans kept are made
+        bool set_up = false;      ///< cell: sources and viewer are known
+        bool finished = false;    ///< cell: has seen the end-of-scene mark
         std::uint32_t object = no_object;
     };
     static constexpr std::uint32_t no_object = ~std::uint32_t(0);

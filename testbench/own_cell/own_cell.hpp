@@ -16,7 +16,12 @@ class OwnCell : public CellSocket {
   public:
     SC_HAS_PROCESS(OwnCell);
     OwnCell(sc_core::sc_module_name name, Environment& environment, int x, int y)
-        : CellSocket(name), env_(environment), x_(x), y_(y) {
+        : CellSocket(name),
+          env_(environment),
+          x_(x),
+          y_(y),
+          loading_(environment.machine.loading_units),
+          traversal_(environment.machine.traversal_units) {
         SC_METHOD(run);
         sensitive << woken();
         dont_initialize();
@@ -43,11 +48,11 @@ class OwnCell : public CellSocket {
             pass_load(loading_, *load_input(), output(Side::east), store_, env_, meter_, x_, wakeup_);
             if (!store_.voxels.empty()) SC_REPORT_ERROR("own_cell", "a voxel lies here, and it can't trace");
         } else {
-            if (traversal_.packet()) traversal_.finish(now_, wakeup_);
+            traversal_.finish(now_, wakeup_, [](std::uint32_t) {});
             if (!injector_.ray() && !env_.draining && injector_.primary_due(now_, wakeup_))
                 injector_.load(*launch(begin_primary(injector_, env_, x_, y_), env_));
             pass();
-            if (!traversal_.packet()) test();
+            test();
         }
         if (wakeup_.next != never) env_.scheduler.wake(*this, wakeup_.next);
     }
@@ -118,18 +123,19 @@ class OwnCell : public CellSocket {
         return true;
     }
 
-    /// Tests the next untested ray, in turn.
+    /// Tests the next untested rays, in turn, until no unit is free.
     void test() {
-        for (std::size_t i = 0; i < places_.size(); ++i) {
-            const std::size_t at = (traversal_.next() + i) % places_.size();
+        const std::size_t first = traversal_.next();
+        for (std::size_t i = 0; i < places_.size() && traversal_.free(); ++i) {
+            const std::size_t at = (first + i) % places_.size();
             const Message message = head(places_[at]);
             if (message.kind != Message::Kind::ray || message.ray->stage != RayPacket::Stage::untested)
                 continue;
-            const std::uint32_t cycles = TraversalUnit::test(
+            const std::uint32_t cycles = TraversalUnits::test(
                 *message.ray, {store_, {}, env_.context, env_.classes, x_, y_}, env_.costs());
             meter_.tested(env_.meters.counters, message.ray->visit, cycles);
             traversal_.start(*message.ray, std::uint32_t(at), now_ + cycles);
-            return wakeup_.at(traversal_.done());
+            wakeup_.at(now_ + cycles);
         }
     }
 
@@ -139,8 +145,8 @@ class OwnCell : public CellSocket {
     Wakeup wakeup_;
     std::vector<Place> places_;
     CellMeter meter_;
-    LoadingUnit loading_;
-    TraversalUnit traversal_;
+    LoadingUnits loading_;
+    TraversalUnits traversal_;
     Injector injector_;
     CellStore store_;          ///< stays empty
     Cycle delivered_ = never;  ///< cycle of the last answer that came home

@@ -1,4 +1,4 @@
-"""One cell, cycle by cycle: its places, the traversal unit, the router, ages."""
+"""One cell, cycle by cycle: its places, the traversal units, the router, ages."""
 
 from links import Answer, InBuffer, OutLink, Packet
 from loading import Loading
@@ -23,7 +23,7 @@ class Cell(Store, Loading):
         self.answer_inputs = [side for side in range(4) if side in sides]
         self.voxels = []
         self.phase, self.draining = "load", False
-        self.in_test, self.test_done, self.next_place = None, 0, 0
+        self.in_test, self.next_place = [], 0       # [(packet, when its test is over)]
         self.port_used, self.replies_first = None, False
         self.moved = 0                              # grows with everything that the cell does
         self.start_store()
@@ -59,10 +59,11 @@ class Cell(Store, Loading):
             self.load(now)
             return
         self.answer_moved, self.sides_done = False, set()
-        if self.in_test and now >= self.test_done:
-            self.in_test.stage, self.in_test.decided = "decided", now
-            self.in_test = None
-            self.moved += 1
+        for packet, done in self.in_test:
+            if now >= done:
+                packet.stage, packet.decided = "decided", now
+                self.moved += 1
+        self.in_test = [test for test in self.in_test if now < test[1]]
         self.finish_shading(now)
         self.move_overdue(now)
         if self.replies_first:
@@ -80,9 +81,10 @@ class Cell(Store, Loading):
 
     def wakes(self, now):
         """Cycles after `now` in which the cell may do something that it can't do yet."""
-        times = [self.test_done, self.job_done, self.own_retry_at, self.load_done, now - now % EPOCH + EPOCH]
+        times = [self.job_done, self.own_retry_at, self.load_done, now - now % EPOCH + EPOCH]
         if self.phase == "load":
-            times.append(self.all_made - (self.S.option["load-queue"] - 1) * self.making())
+            times += self.kept
+        times += [done for _, done in self.in_test]
         times += [link.wires_free for link in self.outputs.values()]
         for slot in self.slots:
             times += slot.retry_at
@@ -94,19 +96,18 @@ class Cell(Store, Loading):
 
     def start_test(self, now):
         """Round robin over the places, from the one behind the last that was tested on."""
-        if self.in_test:
-            return
         count = self.places()
         start = self.next_place if self.next_place < count else 0
         for place in list(range(start, count)) + list(range(start)):
+            if len(self.in_test) == self.S.option["traversal-units"]:
+                return
             packet = self.packet_at(place, now)
             if packet and packet.stage == "untested":
                 packet.visit = visit(packet.ray, self.voxels, self.S)
                 packet.need = need_of(packet.ray, packet.visit, self.voxels, self.S, self.x, self.y)
-                packet.stage, self.in_test = "in test", packet
-                self.test_done, self.next_place = now + packet.visit.cycles(self.S), place + 1
+                packet.stage, self.next_place = "in test", place + 1
+                self.in_test.append((packet, now + packet.visit.cycles(self.S)))
                 self.moved += 1
-                return
 
     def decided(self, now):
         """(since, place) of rays that wait to move, oldest decision first."""

@@ -1,4 +1,4 @@
-"""The loading unit: a message at a time, from the west to the east."""
+"""The loading units: a message at a time, from the west to the east."""
 
 from links import InBuffer
 from rays import EAST, WEST
@@ -21,7 +21,7 @@ class Loading:
         # In the first column over a link of its own.
         self.load_input = self.inputs[WEST, 0] if WEST in self.outputs and self.x > 0 else InBuffer()
         self.loading, self.load_done = None, 0
-        self.all_made = 0                           # when the last of the voxels of the spans kept is made
+        self.kept = []                              # when the voxels of the spans kept are made, in order
         self.object = None                          # whose features have come last
 
     def load(self, now):
@@ -41,7 +41,8 @@ class Loading:
         if not (ends or self.outputs[EAST].can_send(0, now)):
             return
         if makes:
-            self.all_made = max(self.all_made, now) + self.making()
+            begins = max(now, self.made_until(self.S.option["loading-units"] - 1))
+            self.kept = [made for made in self.kept if made > now] + [begins + self.S.cost("load_" + self.S.option["hit"])]
             store_voxel(self.S, self.voxels, item, self.object)
             if not ends:
                 item.advance()
@@ -54,9 +55,10 @@ class Loading:
         if not ends:
             self.send(EAST, 0, item, now)
 
-    def making(self):
-        return self.S.cost("load_" + self.S.option["hit"])
+    def made_until(self, left):
+        """The cycle from which no more than `left` of the spans kept are left."""
+        return self.kept[-left - 1] if len(self.kept) > left else 0
 
     def has_room(self, now):
         most = self.S.option["load-queue"]
-        return most == 0 or now >= self.all_made - (most - 1) * self.making()
+        return most == 0 or now >= self.made_until(most - 1)

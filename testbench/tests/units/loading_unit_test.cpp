@@ -11,7 +11,7 @@ struct Loads {
     Scheduler scheduler{"scheduler", sc_core::sc_time(50, sc_core::SC_NS)};
     Link link{scheduler, 1, 1};
     CostTable costs;
-    LoadingUnit unit;
+    LoadingUnits unit{1};
     LoadItem item;
     LoadItem* work(int x, Cycle now, Wakeup& wakeup) {
         scheduler.set_now(now);
@@ -45,7 +45,7 @@ TEST(LoadingUnit, MovesASpanThatHasComeToItsColumnOnWithoutItsVoxel) {
 TEST(LoadingUnit, PassesASpanOnThatHasNotComeYet) { expect_work(5, &CostTable::load_forward); }
 
 TEST(LoadingUnit, MakesTheVoxelsOfTheSpansThatItKeepsOneAfterTheOther) {
-    LoadingUnit unit;
+    LoadingUnits unit(1);
     Wakeup wakeup;
     EXPECT_EQ(unit.kept(100, 7), 0);
     unit.keep(100, 10);
@@ -62,7 +62,7 @@ TEST(LoadingUnit, MakesTheVoxelsOfTheSpansThatItKeepsOneAfterTheOther) {
 }
 
 TEST(LoadingUnit, KeepsNoMoreSpansThanItMayAndAsksToBeWokenWhenOneIsDone) {
-    LoadingUnit unit;
+    LoadingUnits unit(1);
     Wakeup wakeup;
     unit.keep(100, 10);
     unit.keep(100, 30);
@@ -77,8 +77,28 @@ TEST(LoadingUnit, KeepsNoMoreSpansThanItMayAndAsksToBeWokenWhenOneIsDone) {
     EXPECT_EQ(later.next, 210u);
 }
 
+TEST(LoadingUnit, SharesTheSpansOutBetweenItsUnits) {
+    LoadingUnits unit(2);
+    unit.keep(100, 10);
+    unit.keep(100, 30);
+    EXPECT_EQ(unit.made(), 130u) << "at the same time";
+    unit.keep(100, 40);
+    EXPECT_EQ(unit.made(), 210u) << "by the one that is free first";
+    EXPECT_EQ(unit.kept(100, 40), 3);
+    EXPECT_EQ(unit.to_make(40), 170u + 90u);
+    Wakeup wakeup;
+    EXPECT_FALSE(unit.has_room(3, 100, 40, wakeup));
+    EXPECT_EQ(wakeup.next, 110u);
+    EXPECT_EQ(unit.kept(100, 110), 2);
+    EXPECT_EQ(unit.kept(100, 130), 1);
+    EXPECT_EQ(unit.kept(100, 210), 0);
+    unit.keep(100, 500);
+    unit.keep(100, 500);
+    EXPECT_EQ(unit.made(), 600u) << "both were idle";
+}
+
 TEST(LoadingUnit, IsLoadedOnceWhenTheMarkHasPassedAndTheLastVoxelIsMade) {
-    LoadingUnit unit;
+    LoadingUnits unit(1);
     Wakeup wakeup;
     EXPECT_FALSE(unit.closes(5, wakeup)) << "no mark yet";
     unit.keep(100, 10);
@@ -93,12 +113,12 @@ TEST(LoadingUnit, EndsASpanAtItsLastColumnAndWhatIsBroadcastAtTheRowsEnd) {
     LoadItem span;
     span.kind = LoadItem::Kind::span;
     span.span.last = 5;
-    EXPECT_FALSE(LoadingUnit::ends_at(span, 4, 8));
-    EXPECT_TRUE(LoadingUnit::ends_at(span, 5, 8));
+    EXPECT_FALSE(LoadingUnits::ends_at(span, 4, 8));
+    EXPECT_TRUE(LoadingUnits::ends_at(span, 5, 8));
     LoadItem features;
     features.kind = LoadItem::Kind::features;
-    EXPECT_FALSE(LoadingUnit::ends_at(features, 5, 8));
-    EXPECT_TRUE(LoadingUnit::ends_at(features, 7, 8));
+    EXPECT_FALSE(LoadingUnits::ends_at(features, 5, 8));
+    EXPECT_TRUE(LoadingUnits::ends_at(features, 7, 8));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ struct Test1 {
         set_direction(packet.ray, {1, 0, 0}, unit.context->arithmetic);
     }
     std::uint32_t run(int x) {
-        return TraversalUnit::test(packet, {unit.store, {}, *unit.context, classes, x, 1}, unit.costs);
+        return TraversalUnits::test(packet, {unit.store, {}, *unit.context, classes, x, 1}, unit.costs);
     }
 };
 
@@ -30,29 +30,55 @@ TEST(TraversalUnit, FindsTheWayAndTheNeedOfARayInAnEmptyCell) {
     EXPECT_EQ(test.packet.need.kind, Need::Kind::response) << "over the border, with nothing beyond";
 }
 
+/// The places of the tests that are over in cycle `now`.
+std::vector<std::uint32_t> finished(TraversalUnits& units, Cycle now, Wakeup& wakeup) {
+    std::vector<std::uint32_t> places;
+    units.finish(now, wakeup, [&](std::uint32_t place) { places.push_back(place); });
+    return places;
+}
+
 TEST(TraversalUnit, KeepsARayInTestUntilItsTimeIsOver) {
     Test1 test;
-    TraversalUnit unit;
-    EXPECT_EQ(unit.packet(), nullptr);
-    unit.start(test.packet, 3, 50);
+    TraversalUnits units(1);
+    EXPECT_TRUE(units.idle());
+    units.start(test.packet, 3, 50);
     EXPECT_EQ(test.packet.stage, RayPacket::Stage::in_test);
+    EXPECT_FALSE(units.free());
     Wakeup wakeup;
-    EXPECT_FALSE(unit.finish(49, wakeup));
+    EXPECT_TRUE(finished(units, 49, wakeup).empty());
     EXPECT_EQ(wakeup.next, 50u);
-    EXPECT_EQ(unit.packet(), &test.packet);
-    EXPECT_TRUE(unit.finish(50, wakeup));
+    EXPECT_EQ(units[0].packet, &test.packet);
+    EXPECT_EQ(finished(units, 50, wakeup), std::vector<std::uint32_t>{3});
     EXPECT_EQ(test.packet.stage, RayPacket::Stage::decided);
     EXPECT_EQ(test.packet.decided, 50u);
-    EXPECT_EQ(unit.packet(), nullptr);
+    EXPECT_TRUE(units.idle());
 }
 
 TEST(TraversalUnit, LooksForTheNextRayBehindTheOneItTestedLast) {
     Test1 test;
-    TraversalUnit unit;
-    EXPECT_EQ(unit.next(), 0u);
-    unit.start(test.packet, 3, 50);
-    EXPECT_EQ(unit.next(), 4u);
-    EXPECT_EQ(unit.place(), 3u);
+    TraversalUnits units(1);
+    EXPECT_EQ(units.next(), 0u);
+    units.start(test.packet, 3, 50);
+    EXPECT_EQ(units.next(), 4u);
+    EXPECT_EQ(units.last().place, 3u);
+}
+
+TEST(TraversalUnit, TestsAsManyRaysAtATimeAsThereAreUnits) {
+    Test1 test;
+    RayPacket second = test.packet;
+    RayPacket third = test.packet;
+    TraversalUnits units(2);
+    units.start(test.packet, 3, 50);
+    EXPECT_TRUE(units.free());
+    units.start(second, 0, 40);
+    EXPECT_FALSE(units.free());
+    Wakeup wakeup;
+    EXPECT_EQ(finished(units, 40, wakeup), std::vector<std::uint32_t>{0}) << "the later test was shorter";
+    EXPECT_EQ(wakeup.next, 50u);
+    units.start(third, 1, 50);
+    EXPECT_EQ(units.last().packet, &third);
+    EXPECT_EQ(finished(units, 50, wakeup), (std::vector<std::uint32_t>{3, 1}));
+    EXPECT_TRUE(units.idle());
 }
 
 }  // namespace
