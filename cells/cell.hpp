@@ -46,6 +46,9 @@ class alignas(64) Cell final : public Client {
     /// Begins the environment's phase in the next cycle.
     void begin_phase();
 
+    /// Begins with the cell's own tree once more, in a phase trace that is over.
+    void begin_tree() { injector_.begin_phase(true); }
+
     /// Runs one cycle. Returns the next cycle in which the cell must run without being woken; `never` if
     /// there is none.
     Cycle step(Cycle now);
@@ -208,7 +211,9 @@ class alignas(64) Cell final : public Client {
     void unpark(Cycle now);
     std::uint32_t bits_in_test() const {
         std::uint32_t bits = 0;
-        for (std::size_t i = 0; i < traversal_.busy(); ++i) bits |= bit_of(traversal_[i].place);
+        for (std::size_t i = 0; i < traversal_.count(); ++i) {
+            if (traversal_.packet(i)) bits |= bit_of(traversal_.place(i));
+        }
         return bits;
     }
 

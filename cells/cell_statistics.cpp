@@ -11,8 +11,8 @@ void Cell::add_stall(const Wait& wait, std::uint64_t ray, Cycle now) {
 
 Cell::Remaining Cell::remaining(Cycle now) const {
     Remaining remaining;
-    for (std::size_t i = 0; i < traversal_.busy(); ++i) {
-        if (traversal_[i].done > now) remaining.traversal += traversal_[i].done - now;
+    for (std::size_t i = 0; i < traversal_.count(); ++i) {
+        if (traversal_.packet(i) && traversal_.done(i) > now) remaining.traversal += traversal_.done(i) - now;
     }
     if (!shading_.idle() && shading_.done() > now) remaining.shading = shading_.done() - now;
     return remaining;

@@ -59,6 +59,8 @@ std::string name_of(const Binding& b) {
             return "the exterior processors";
         case Unit::exterior_link:
             return "a link of the exterior";
+        case Unit::tree:
+            return "the tree of pixel (" + std::to_string(b.x) + ", " + std::to_string(b.y) + ") alone";
     }
     return "nothing";
 }

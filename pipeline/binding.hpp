@@ -1,4 +1,5 @@
-// What binds a phase: the unit or link that was at work for most of its cycles. No such phase can be shorter.
+// What binds a phase: the unit or link that was at work for most of its cycles, or the longest tree of rays.
+// No such phase can be shorter.
 #pragma once
 
 #include <string>
@@ -23,7 +24,8 @@ struct Binding {
         traversal_unit,
         shading_unit,
         exterior,
-        exterior_link
+        exterior_link,
+        tree  ///< of a pixel, alone in the machine: no trace is shorter than its longest tree
     };
     Unit unit = Unit::none;
     std::int32_t x = -1;

@@ -43,6 +43,12 @@ class Machine : public sc_core::sc_module {
     /// machine's result, but only rank 0 gets the picture, the ledger and the schedule hash.
     RunResult run(std::function<void(const RunProgress&)> progress = {});
 
+    /// Traces the trees of the pixels with most hops once more, one after the other, each alone in the
+    /// machine: the longest, and its cycles. Nothing waits there for another tree, so the trace can't be
+    /// shorter. Call it after a run that completed its trace, once nothing else is asked of the machine: its
+    /// counters go on. Not for random stalls, limits of cycles or several ranks: `Unit::none` then.
+    Binding longest_tree();
+
     /// For signal handlers: once `flag` is not 0, the run ends before its next cycle with the verdict
     /// `interrupted` and the results so far. Null: no interruption.
     void interrupt_by(const volatile std::sig_atomic_t* flag) { interrupt_ = flag; }

@@ -218,6 +218,15 @@ void Array::begin_phase() {
     wake_all(environment_.scheduler.now() + 1);
 }
 
+void Array::begin_tree(int x, int y) {
+    if (CellSocket* own = socket(x, y)) {
+        own->begin_phase();
+    } else {
+        cell(x, y).begin_tree();
+    }
+    environment_.scheduler.wake(client(x, y), environment_.scheduler.now() + 1);
+}
+
 void Array::wake_all(Cycle cycle) {
     for (Cell& cell : cells_) environment_.scheduler.wake(client(cell.x(), cell.y()), cycle);
 }

@@ -63,6 +63,8 @@ class Array : public sc_core::sc_module {
 
     /// Begins the environment's phase: wakes every cell in the next cycle.
     void begin_phase();
+    /// Has one cell send its primary ray once more, in the next cycle; phase trace must be over.
+    void begin_tree(int x, int y);
     /// Wakes every cell in this cycle.
     void wake_all(Cycle cycle);
 

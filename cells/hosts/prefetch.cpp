@@ -102,7 +102,7 @@ void Prefetch::outputs(const Cell& cell) const {
             output(cell, packet->need.side, packet->need.index);
     };
     // Most often a test is over in this step.
-    for (std::size_t i = 0; i < cell.traversal_.busy(); ++i) output_of(cell.traversal_[i].packet);
+    for (std::size_t i = 0; i < cell.traversal_.count(); ++i) output_of(cell.traversal_.packet(i));
     const std::uint32_t decided = cell.decided_ & ~cell.router_.parked();
     for (std::uint32_t rays = decided; rays; rays &= rays - 1)
         output_of(cell.packet_at(std::size_t(__builtin_ctz(rays))));

@@ -72,9 +72,9 @@ Stall CellView::stall_of(const Slot& slot) const {
     return stall_of_answer(answer_to(slot.packet->ray, Answer::Kind::intensity));
 }
 
-UnitView CellView::traversal_unit() const {
-    if (cell_.traversal().idle()) return {};
-    const RayPacket* packet = cell_.traversal()[0].packet;
+UnitView CellView::traversal_unit(std::size_t unit) const {
+    const RayPacket* packet = cell_.traversal().packet(unit);
+    if (!packet) return {};
     const bool compares = !packet->ray.outside && packet->visit.comparisons.runs > 0;
     return {UnitView::State::busy, compares ? UnitView::Operation::compare : UnitView::Operation::walk,
             packet->ray.id};

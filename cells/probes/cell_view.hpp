@@ -40,7 +40,7 @@ class CellView {
     Stall stall_of(const RayPacket& packet) const;
     /// What a slot's child or its reply waits for.
     Stall stall_of(const Slot& slot) const;
-    UnitView traversal_unit() const;
+    UnitView traversal_unit(std::size_t unit) const;
     UnitView shading_unit() const;
     UnitView loading_unit() const;
 

@@ -140,7 +140,8 @@ void Probe::declare_cell(const Cell& cell) {
         declare_buffer(signals, *load, 0, scope_of(cell) + ".distributor", "load");
         vcd_.close_scope();
     }
-    signals.traversal = declare_unit("traversal", true);
+    for (std::size_t unit = 0; unit < cell.traversal().count(); ++unit)
+        signals.traversal.push_back(declare_unit(("traversal_" + std::to_string(unit)).c_str(), true));
     signals.shading = declare_unit("shading", true);
     signals.loading = declare_unit("loading", false);
     vcd_.open_scope("own");
@@ -203,7 +204,8 @@ void Probe::sample_cell(CellSignals& signals, Cycle now) {
     const Cell& cell = *signals.cell;
     const CellView view(cell, now);
     for (BufferSignals& buffer : signals.buffers) sample_buffer(cell, buffer, now);
-    sample_unit(signals.traversal, view.traversal_unit(), true);
+    for (std::size_t unit = 0; unit < signals.traversal.size(); ++unit)
+        sample_unit(signals.traversal[unit], view.traversal_unit(unit), true);
     sample_unit(signals.shading, view.shading_unit(), true);
     sample_unit(signals.loading, view.loading_unit(), false);
     const RayPacket* own = cell.injector().ray();

@@ -57,7 +57,8 @@ class Probe {
     struct CellSignals {
         const Cell* cell;
         std::vector<BufferSignals> buffers;
-        UnitSignals traversal, shading, loading;
+        std::vector<UnitSignals> traversal;
+        UnitSignals shading, loading;
         Signal own_type, own_ray, own_stall;
         Signal store_occupancy;
         std::vector<SlotSignals> slots;

@@ -34,12 +34,13 @@ class InputPorts {
     }
     /// Cycle since which the oldest ray has been at the head of its buffer.
     Cycle head_since(std::size_t input) const { return link_of(input).head_since_at(inputs_[input].place); }
-    /// Removes the oldest ray; returns the bits to clear in pending_. Sets `more` if the buffer is not empty
-    /// now.
+    /// Removes the oldest ray; returns the bits to clear in pending_. Sets `more` if the next message has
+    /// arrived; one on the wires wakes the cell itself, and whether it has left already in this cycle must
+    /// not matter.
     std::uint32_t pop_ray(std::size_t input, Cycle now, bool& more) {
         Link& link = link_of(input);
         const std::uint32_t emptied = link.pop_at(inputs_[input].place, now);
-        more = link.occupancy_at(inputs_[input].place) > 0;
+        more = link.head_at(inputs_[input].place, now) != nullptr;
         return emptied;
     }
 
@@ -55,7 +56,7 @@ class InputPorts {
     Cycle answer_arrival(std::size_t side) const { return links_[side]->arrival_at(answer_places_[side]); }
     std::uint32_t pop_answer(std::size_t side, Cycle now, bool& more) {
         const std::uint32_t emptied = links_[side]->pop_at(answer_places_[side], now);
-        more = links_[side]->occupancy_at(answer_places_[side]) > 0;
+        more = links_[side]->head_at(answer_places_[side], now) != nullptr;
         return emptied;
     }
     /// What the oldest answer waits for.

@@ -11,8 +11,7 @@
 
 namespace raycell {
 
-/// The units are alike, and a ray does not depend on which of them tests it: the model keeps the tests that
-/// are going on, in the order in which they began.
+/// The units are alike, and a ray does not depend on which of them tests it: it is the first that is free.
 class TraversalUnits {
   public:
     /// `count`: units of the cell, 1..most_units.
@@ -31,42 +30,43 @@ class TraversalUnits {
     /// Returns the cycles of the test.
     static std::uint32_t test(RayPacket& packet, const Setting& setting, const CostTable& costs);
 
-    /// Starts the test of the ray at `place` in a free unit; it lasts until cycle `done`.
+    /// Starts the test of the ray at `place` in the first free unit; it lasts until cycle `done`.
     void start(RayPacket& packet, std::uint32_t place, Cycle done) {
         packet.stage = RayPacket::Stage::in_test;
-        tests_[busy_++] = {&packet, done, place};
+        last_ = 0;
+        while (packets_[last_]) ++last_;
+        packets_[last_] = &packet;
+        done_[last_] = done;
+        places_[last_] = std::uint16_t(place);
+        ++busy_;
         next_ = place + 1;
     }
     /// Marks the rays whose tests are over as decided, frees their units and calls decided(place) for each.
     template <typename Decided>
     void finish(Cycle now, Wakeup& wakeup, const Decided& decided) {
-        std::size_t left = 0;
-        for (std::size_t i = 0; i < busy_; ++i) {
-            const Test test = tests_[i];
-            if (now < test.done) {
-                wakeup.at(test.done);
-                tests_[left++] = test;
+        for (std::size_t unit = 0; unit < count_; ++unit) {
+            if (!packets_[unit]) continue;
+            if (now < done_[unit]) {
+                wakeup.at(done_[unit]);
                 continue;
             }
-            test.packet->stage = RayPacket::Stage::decided;
-            test.packet->decided = now;
-            decided(test.place);
+            packets_[unit]->stage = RayPacket::Stage::decided;
+            packets_[unit]->decided = now;
+            packets_[unit] = nullptr;
+            --busy_;
+            decided(places_[unit]);
         }
-        busy_ = std::uint8_t(left);
     }
 
-    struct Test {
-        RayPacket* packet = nullptr;
-        Cycle done = 0;
-        std::uint32_t place = 0;
-    };
     bool idle() const { return busy_ == 0; }
     bool free() const { return busy_ < count_; }  ///< one at least
-    std::size_t busy() const { return busy_; }
-    /// A test that is going on, 0..busy() - 1: the one that began first comes first.
-    const Test& operator[](std::size_t i) const { return tests_[i]; }
-    /// The test that began last; one must be going on.
-    const Test& last() const { return tests_[busy_ - 1U]; }
+    std::size_t count() const { return count_; }
+    // Of a unit, 0..count() - 1.
+    const RayPacket* packet(std::size_t unit) const { return packets_[unit]; }  ///< null: the unit is free
+    Cycle done(std::size_t unit) const { return done_[unit]; }
+    std::uint32_t place(std::size_t unit) const { return places_[unit]; }
+    /// The unit that began last.
+    std::size_t last() const { return last_; }
     /// The place at which the round robin starts to look for the next ray.
     std::uint32_t next() const { return next_; }
 
@@ -74,7 +74,10 @@ class TraversalUnits {
     std::uint32_t next_ = 0;
     std::uint8_t busy_ = 0;
     std::uint8_t count_;
-    std::array<Test, most_units> tests_;
+    std::uint8_t last_ = 0;                           ///< the unit that began last
+    std::array<std::uint16_t, most_units> places_{};  ///< of the rays in test; there are at most 1024 slots
+    std::array<RayPacket*, most_units> packets_{};
+    std::array<Cycle, most_units> done_{};
 };
 
 }  // namespace raycell

@@ -28,9 +28,9 @@ struct RegisterBits {
     int ages = 0;       ///< of each input, the own ray and the shading unit's reply: oldest first
     int credits = 0;    ///< places left behind each output, by class; cycles until wires are free
     int outputs = 0;    ///< the message that leaves over each side, while its place is taken by the next
-    int traversal = 0;  ///< working registers of the traversal unit
+    int traversal = 0;  ///< working registers of the traversal units
     int shading = 0;    ///< of the shading unit, with a hit that has no slot and its reply
-    int loading = 0;    ///< of the loading unit: a span and its object's features, whose voxel is being made
+    int loading = 0;    ///< of the loading units: spans at work, each with its object's features
     int latches = 0;    ///< viewer, background and sources, from the load messages
     int total() const {
         return own_ray + decisions + ages + credits + outputs + traversal + shading + loading + latches;

@@ -69,7 +69,7 @@ constexpr int most_units = 4;  ///< of a kind in a cell
 /// Settings that only time depends on: by invariant 2 none of them changes the picture.
 struct MachineSettings {
     int ray_store = 8;     ///< M, slots per cell, >= 1
-    int buffer_depth = 1;  ///< messages per buffer, >= 1
+    int buffer_depth = 2;  ///< messages per buffer, >= 1
     Networks networks = Networks::half;
     Recovery recovery = Recovery::postpone;
     Slots slots = Slots::reserved;
@@ -78,17 +78,17 @@ struct MachineSettings {
     /// but these stand in the voxels' memory.
     int load_queue = 0;
     /// Units of a cell that make voxels while the array is loaded, each one at a time, 1..most_units.
-    int loading_units = 1;
+    int loading_units = 2;
     /// Units of a cell that test rays, each one at a time, 1..most_units.
-    int traversal_units = 1;
+    int traversal_units = 2;
     int feed_lanes = 16;  ///< ways from geometry to the rows, >= 1; no more than there are rows are used
     int feed_bits = 128;  ///< bits that cross a link of the feed per cycle, >= 1
     double clock_mhz = 20;
-    std::int64_t max_cycles = 0;   ///< 0: no limit
-    int exterior_processors = 64;  ///< >= 1
-    int exterior_latency = 200;    ///< cycles per ray handed to an exterior processor, >= 1
-    std::uint64_t seed = 1;        ///< of the back-off's jitter and of random stalls
-    bool wire_check = false;       ///< rays and answers are packed and unpacked at every link
+    std::int64_t max_cycles = 0;     ///< 0: no limit
+    int exterior_processors = 4096;  ///< >= 1
+    int exterior_latency = 200;      ///< cycles per ray handed to an exterior processor, >= 1
+    std::uint64_t seed = 1;          ///< of the back-off's jitter and of random stalls
+    bool wire_check = false;         ///< rays and answers are packed and unpacked at every link
     /// Probability that a transfer over a link, or an operation of a unit, takes one more cycle; tried again
     /// after each.
     double stall = 0;

@@ -30,6 +30,7 @@ Script::Script(std::string name, std::string says) {
     scenario_.says = std::move(says);
     CellSetup& setup = scenario_.setup;
     setup.machine.costs = CostTable(CostBasis::estimate);  // scenarios write their cycles out
+    setup.machine.buffer_depth = setup.machine.loading_units = setup.machine.traversal_units = 1;
     setup.picture.width = setup.picture.height = 3;
     setup.picture.depth_levels = 10;
     setup.picture.exterior = ExteriorMode::none;

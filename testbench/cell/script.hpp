@@ -13,8 +13,9 @@ namespace raycell {
 const Arithmetic& script_arithmetic();
 
 /// Scenario of cell (1, 1) in the middle of 3x3: a cube 10 deep in 10 levels, the viewer at infinity, nothing
-/// around the cube, otherwise the default machine, with the costs estimated by hand. The own ray sees the
-/// background unless something is loaded. Events may be added in any order.
+/// around the cube, otherwise the default machine, with the costs estimated by hand, one unit of a kind and
+/// buffers of one message. The own ray sees the background unless something is loaded. Events may be added in
+/// any order.
 class Script {
   public:
     Script(std::string name, std::string says);

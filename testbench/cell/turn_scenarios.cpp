@@ -70,6 +70,27 @@ void add_ties(std::vector<Scenario>& all) {
     }
     {
         Script script =
+            empty_cell("two_units",
+                       "of three rays that arrive in one cycle two are tested at the same time by two units, "
+                       "the third when one is free");
+        script.setup().machine.traversal_units = 2;
+        const Ray from_east = ray_of(RayKind::reflected, {1, 0.5, 5}, {-1, 0, 0});
+        const Ray from_south = ray_of(RayKind::reflected, {0.5, 1, 5}, {0, -1, 0});
+        const Ray from_west = ray_of(RayKind::reflected, {0, 0.5, 5}, {1, 0, 0});
+        constexpr Cycle there = sent + ray_link;
+        script.in(sent, Side::east, west_bound, ray_link, from_east)
+            .in(sent, Side::south, east_bound, ray_link, from_south)
+            .in(sent, Side::west, east_bound, ray_link, from_west)
+            .take(there + walk, Side::east, west_bound)
+            .out(there + walk, Side::west, west_bound, ray_link, from_east)
+            .take(there + walk, Side::south, east_bound)
+            .out(there + walk, Side::north, east_bound, ray_link, from_south)
+            .take(there + 2 * walk, Side::west, east_bound)
+            .out(there + 2 * walk, Side::east, east_bound, ray_link, from_west);
+        all.push_back(script.until(sent + 1000));
+    }
+    {
+        Script script =
             empty_cell("rays_in_turn",
                        "of two rays that want one output the one that was decided first goes first; "
                        "who was tested last is tested last");

@@ -37,7 +37,7 @@ void TraversalRecorder::cell_event(const Cell& cell, Cycle now, CellEvent event,
     if (event != CellEvent::test) return;
     const auto target = files_.find(&cell);
     if (target == files_.end()) return;
-    RayPacket packet = *cell.traversal().last().packet;
+    RayPacket packet = *cell.traversal().packet(cell.traversal().last());
     const Message message(&packet);
     const std::string bits = packing_.packed(message);
     const TraversalSetting setting{cell.store(), environment_.context, environment_.machine, cell.x(),

@@ -122,9 +122,10 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     if (ranks) rows = ranks->gather_rows(rows);
     run.cells_csv = cells_csv_header();
     for (const std::string& row : rows) run.cells_csv += row;
-    if (ranks) {
-        run.ranks = ranks->report(machine, peak_memory_bytes());
-    }
+    if (ranks) run.ranks = ranks->report(machine, peak_memory_bytes());
+    const bool traced = options.picture.stage == RunStage::trace;
+    if (traced && run.result.verdict == Verdict::completed)
+        run.result.trace_binding.consider(machine.longest_tree());
     return run;
 }
 

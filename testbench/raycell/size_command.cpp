@@ -13,6 +13,7 @@
 #include "testbench/common/report_json.hpp"
 #include "testbench/common/scene_input.hpp"
 #include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/size_frames.hpp"
 #include "testbench/raycell/size_report.hpp"
 
 namespace raycell {
@@ -23,6 +24,7 @@ using Json = nlohmann::ordered_json;
 struct SizeOptions : RenderOptions {
     SizeOptions() { prefix = "size"; }
     SizeGoal goal;
+    std::int64_t frame_cycles = 0;  ///< 0: cycles do not matter
 };
 
 PictureSettings picture_of(const RenderOptions& options, const SizeSetting& setting) {
@@ -228,14 +230,21 @@ int report_unreachable(const SizeTrial& nearest, Json json, OutputSet& outputs) 
 }
 
 int run(const SizeOptions& options, const OptionTable& table, const CLI::App& app) {
-    if (app.count("--psnr") + app.count("--wrong-hits") == 0) {
-        throw UsageError("no goal given; expected --psnr, --wrong-hits or both, see --help");
+    if (app.count("--psnr") + app.count("--wrong-hits") + app.count("--frame-cycles") == 0) {
+        throw UsageError(
+            "no goal given; expected --psnr, --wrong-hits, --frame-cycles or several, see --help");
     }
     OutputSet outputs(options.prefix);
     check_place("--output", options.prefix);
     outputs.announce({".csv", ".json", ".toml"});
+    if (options.frame_cycles > 0) outputs.announce({".svg"});
     check_memory(options);
     const CellScene scene = read_and_place(options, outputs);
+    if (options.frame_cycles > 0) {
+        const int generations = bound_of(Context(scene, options.picture), options.machine).generations;
+        const FrameGoal goal{options.goal, std::uint64_t(options.frame_cycles)};
+        return size_frames(options, goal, !scene.curved.empty(), std::max(1, generations), outputs);
+    }
     const TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
     const bool exterior = options.picture.exterior == ExteriorMode::host;
     const CellScene clipped = exterior ? CellScene() : clip_scene(scene);
@@ -275,6 +284,8 @@ Command add_size_command(CLI::App& program) {
     table->number("psnr", options->goal.psnr_db, 0.0, 200.0, "goal: at least this PSNR, dB");
     table->number("wrong-hits", options->goal.wrong_hit_percent, 0.0, 100.0,
                   "goal: at most so many pixels with another first hit, percent");
+    table->number("frame-cycles", options->frame_cycles, std::int64_t(0), std::int64_t(1) << 62,
+                  "goal: at most so many cycles for a frame, loading and trace; 0: any");
     table->number("depth", options->picture.depth_levels, 1, 65536, "most depth levels of the cube to try");
     table->choice("exterior", options->picture.exterior,
                   {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},

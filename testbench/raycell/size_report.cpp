@@ -18,7 +18,8 @@ std::string decimals(const char* format, double value) {
 /// Without the quotes that words have in JSON.
 std::string plain(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
-/// A Markdown table, padded to be readable as text; the first `left` columns are words.
+}  // namespace
+
 std::string aligned(const std::vector<Row>& rows, std::size_t left) {
     std::vector<std::size_t> widths(rows.front().size(), 0);
     for (const Row& row : rows) {
@@ -39,8 +40,6 @@ std::string aligned(const std::vector<Row>& rows, std::size_t left) {
     }
     return text;
 }
-
-}  // namespace
 
 Json render_configuration(RenderOptions options) {
     CLI::App unused;

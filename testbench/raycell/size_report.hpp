@@ -10,6 +10,9 @@
 
 namespace raycell {
 
+/// A Markdown table, padded to be readable as text; the first `left` columns are words.
+std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t left);
+
 /// Every option of `raycell render` with its value, for to_toml().
 nlohmann::ordered_json render_configuration(RenderOptions options);
 

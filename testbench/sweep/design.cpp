@@ -26,14 +26,6 @@ std::string refusal(CLI::App& program, const std::string& option, const std::str
     }
 }
 
-std::string digest(const std::string& text) {
-    Fnv hash;
-    for (const char c : text) hash.add(std::uint64_t(static_cast<unsigned char>(c)));
-    char digits[17];
-    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash.value()));
-    return digits;
-}
-
 /// "a..b" or "a..b:step", whole numbers; empty if it is none.
 std::vector<std::string> range_of(const std::string& word) {
     const auto dots = word.find("..");
@@ -160,6 +152,14 @@ class Reader {
 };
 
 }  // namespace
+
+std::string digest(const std::string& text) {
+    Fnv hash;
+    for (const char c : text) hash.add(std::uint64_t(static_cast<unsigned char>(c)));
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash.value()));
+    return digits;
+}
 
 std::string digest_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);

@@ -40,6 +40,8 @@ struct SweepDesign {
 /// Most runs of one sweep.
 constexpr std::size_t most_sweep_runs = 100000;
 
+/// A digest of a text: 16 hexadecimal digits.
+std::string digest(const std::string& text);
 /// A digest of a file's contents; of a file that can't be read, that of nothing.
 std::string digest_of(const std::string& path);
 

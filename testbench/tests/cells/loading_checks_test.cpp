@@ -282,6 +282,7 @@ TEST(LoadBound, IsTheLargerOfACellsTwoKindsOfWorkNotTheirSum) {
     plan.units.resize(plan.layout.units());
     plan.links.resize(plan.layout.links());
     Need& cell = plan.units[plan.layout.cell(0, 0)];
+    plan.voxel_cycles = 10;
     cell.cycles = 70;
     cell.making = 60;
     EXPECT_EQ(plan.bound().cycles, 70u);
@@ -289,6 +290,9 @@ TEST(LoadBound, IsTheLargerOfACellsTwoKindsOfWorkNotTheirSum) {
     cell.making = 80;
     EXPECT_EQ(plan.bound().cycles, 80u);
     EXPECT_EQ(plan.bound().of, "voxels of cell_0_0");
+    plan.loading_units = 2;
+    cell.making = 150;
+    EXPECT_EQ(plan.bound().cycles, 80u) << "15 voxels: one unit makes 8 of them";
 }
 
 TEST(LoadLayout, GivesEachLaneItsRowsAndNoLinkBelowTheLast) {

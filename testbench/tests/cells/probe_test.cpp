@@ -163,8 +163,10 @@ void expect_buffers_as_recorded(Networks networks, int depth) {
     for (const auto& [now, event, ray, detail] : record.events) {
         if (event == CellEvent::test) {
             ++tested;
-            EXPECT_EQ(dump.at("raycell.cell_12_10.traversal.ray", now), ray_name(ray));
-            EXPECT_EQ(dump.at("raycell.cell_12_10.traversal.state", now), "busy");
+            const std::string units = "raycell.cell_12_10.traversal_";
+            const std::string unit = units + (dump.at(units + "0.ray", now) == ray_name(ray) ? "0" : "1");
+            EXPECT_EQ(dump.at(unit + ".ray", now), ray_name(ray));
+            EXPECT_EQ(dump.at(unit + ".state", now), "busy");
         } else if (event == CellEvent::accept) {
             ++accepted;
             const std::string slot = "raycell.cell_12_10.ray_store.slot_" + std::to_string(detail);
@@ -189,7 +191,10 @@ TEST(TimedProbe, ShowsEveryBufferOfFourClassesAsItsSendsAndPopsSay) {
 
 TEST(TimedProbe, AWindowHasTheWholeRunsValuesInItsCyclesAndNoOthers) {
     const ProbeSettings window{154287, 157632, 1024000000};
-    Probed probed("still_life", 16, {{12, 10}}, window, [](MachineSettings&) {});
+    Probed probed("still_life", 16, {{12, 10}}, window, [](MachineSettings& m) {
+        m.loading_units = m.traversal_units = m.buffer_depth = 1;
+        m.exterior_processors = 64;
+    });
     // A second probe of the same run records all cycles.
     std::FILE* whole_file = std::tmpfile();
     Probe whole({&probed.timed->array().cell(12, 10)}, probed.timed->environment(), whole_file,
@@ -249,7 +254,7 @@ std::map<std::string, int> causes_at_end(const Probed& probed, const vcd::Dump& 
 
 TEST(TimedProbe, HeadsInADeadlockOfSharedBuffersWaitForRoomAndForNothingThatPasses) {
     Probed probed("facing_mirrors", 24, all_cells(24), ProbeSettings(),
-                  [](MachineSettings& m) { m.networks = Networks::shared; });
+                  [](MachineSettings& m) { m.networks = Networks::shared, m.buffer_depth = 1; });
     const vcd::Dump dump = probed.run();
     ASSERT_EQ(probed.result.verdict, Verdict::deadlock);
     auto causes = causes_at_end(probed, dump);

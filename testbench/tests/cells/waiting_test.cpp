@@ -106,7 +106,7 @@ TEST(CellWaiting, AnAnswerThatNeverLeavesTheShadingUnitCountsUpToTheEnd) {
     CellScene wall = LoneCell::empty(10);
     hand_made::add_rectangle(wall, hand_made::add_object(wall, hand_made::glowing(dvec3(0.5))), {1, 1, 5},
                              {0, 1, 0}, {1, 0, 0});
-    EmptyCell cell({}, wall);
+    EmptyCell cell(estimated_machine(), wall);
     const CellStatistics s = cell.run(1000, false, [&](Cycle now) {
         if (now != 1) return;
         Ray ray = lone_ray({0.5, 1, 4.9}, glm::normalize(dvec3(0, -0.1, 1)));
@@ -116,6 +116,7 @@ TEST(CellWaiting, AnAnswerThatNeverLeavesTheShadingUnitCountsUpToTheEnd) {
         cell.send(cell.from(Side::south), ray);
         cell.send_answer(cell.east_out(), 2);
     });
+    ASSERT_EQ(cell.machine.buffer_depth, 1) << "one answer fills it";
     EXPECT_GT(s.shading_cycles, 0u);
     EXPECT_EQ(cycles_of(s, Stall::answer_full), 1000 - (2 + s.traversal_cycles + s.shading_cycles));
     EXPECT_EQ(all_cycles(s), cycles_of(s, Stall::answer_full));

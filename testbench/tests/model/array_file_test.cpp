@@ -278,7 +278,8 @@ TEST(ArrayFile, TheTimingTellsApartWhatItsCyclesDependOn) {
         return loading_timing(other);
     };
     EXPECT_NE(changed([](MachineSettings& m) { m.link_bits = 19; }), timing);
-    EXPECT_NE(changed([](MachineSettings& m) { m.buffer_depth = 2; }), timing);
+    EXPECT_NE(changed([](MachineSettings& m) { m.buffer_depth = 1; }), timing);
+    EXPECT_NE(changed([](MachineSettings& m) { m.loading_units = 1; }), timing);
     EXPECT_NE(changed([](MachineSettings& m) { m.costs.load_edge = 13; }), timing);
     EXPECT_NE(changed([](MachineSettings& m) { m.costs.geometry_polygon = 41; }), timing);
     EXPECT_EQ(changed([](MachineSettings& m) {

@@ -311,6 +311,7 @@ TEST(StorageBits, OfBuffersFollowTheNetworks) {
 
 TEST(FeedBits, AreThoseOfLanesAndRows) {
     Sized sized;  // 128x128 cells, buffers of 1, links of 20 bits
+    sized.machine.buffer_depth = 1;
     sized.machine.feed_lanes = 2;
     sized.machine.feed_bits = 100;
     const int polygon = 3 + 20 + 147 + 324 + 16 + 4 * 108;  // id, plane and slack, normals, count, corners
@@ -347,16 +348,16 @@ TEST(StorageBits, OfASlotAreThoseOfTheTable) {
 }
 
 TEST(StorageBits, OfRegistersAreThoseOfTheTable) {
-    Sized sized;  // as above, half networks, buffers of 1, links of 20 bits
+    Sized sized;  // as above, half networks, buffers of 2, links of 20 bits, two units of a kind
     const RegisterBits bits = register_bits(sized.picture, sized.machine, sized.formats, 1);
     EXPECT_EQ(bits.own_ray, 256 + 2 + 17);
     EXPECT_EQ(bits.decisions, 7 * 48);
     EXPECT_EQ(bits.ages, (6 + 4 + 2) * 17);
-    EXPECT_EQ(bits.credits, 10 * 1 + 8 * 4);
+    EXPECT_EQ(bits.credits, 10 * 2 + 8 * 4);
     EXPECT_EQ(bits.outputs, 4 * 256);
-    EXPECT_EQ(bits.traversal, 40 + 31 + 56 + 18 + 8 + 68 + 40);
+    EXPECT_EQ(bits.traversal, 2 * (40 + 31 + 56 + 18 + 8 + 68 + 40));
     EXPECT_EQ(bits.shading, 12 + 4 * 60 + 20 + 40 + 112 + 129 + 10 + 87);
-    EXPECT_EQ(bits.loading, (943 - 3) + (104 - 3));
+    EXPECT_EQ(bits.loading, 2 * ((943 - 3) + (104 - 3)));
     EXPECT_EQ(bits.latches, 217 + 162);
 }
 
@@ -364,8 +365,8 @@ TEST(StorageBits, OfRegistersFollowTheMachine) {
     Sized sized;
     const auto bits = [&] { return register_bits(sized.picture, sized.machine, sized.formats, 1); };
     const RegisterBits plain = bits();
-    sized.machine.buffer_depth = 4;  // a credit counter per output and class grows from 1 to 3 bits
-    EXPECT_EQ(bits().credits, plain.credits + 10 * 2);
+    sized.machine.buffer_depth = 4;  // a credit counter per output and class grows from 2 to 3 bits
+    EXPECT_EQ(bits().credits, plain.credits + 10);
     sized.machine = {};
     sized.machine.networks = Networks::quadrant;  // eight ray inputs, not six
     EXPECT_EQ(bits().decisions - plain.decisions, 2 * 48);

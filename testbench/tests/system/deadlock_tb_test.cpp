@@ -43,8 +43,8 @@ Json report(const Workshop& workshop, const std::string& arguments, int exit_cod
 
 TEST(DeadlockTb, ShowsTheCellsOfADeadlockAsWaveformsThatOpenAtIt) {
     const Workshop workshop;
-    const Finished finished =
-        run_deadlock_tb(workshop, "--networks shared --cells 16x16 --vcd-on-deadlock --quiet -o results/a");
+    const Finished finished = run_deadlock_tb(
+        workshop, "--buffer 1 --networks shared --cells 16x16 --vcd-on-deadlock --quiet -o results/a");
     EXPECT_EQ(finished.exit_code, 3) << finished.err;
     const Json report = Json::parse(read_text(workshop.result("a.json")));
     const std::string vcd = read_text(workshop.result("a.vcd"));
@@ -95,7 +95,8 @@ TEST(DeadlockTb, CompletesByDefaultAndSaysSo) {
 TEST(DeadlockTb, LocksOverOneNetworkAtAnyRayStore) {
     const Workshop workshop;
     for (const std::string slots : {"1", "8", "200"}) {
-        const Json json = report(workshop, "--networks shared --recovery none --ray-store " + slots, 3);
+        const Json json =
+            report(workshop, "--buffer 1 --networks shared --recovery none --ray-store " + slots, 3);
         EXPECT_EQ(json.at("verdict"), "deadlock");
         EXPECT_FALSE(json.at("deadlock").at("report").empty());
         EXPECT_LT(json.at("pixels").at("completed").get<int>(), json.at("pixels").at("all").get<int>());
@@ -105,7 +106,7 @@ TEST(DeadlockTb, LocksOverOneNetworkAtAnyRayStore) {
 TEST(DeadlockTb, FindsAKnotLongBeforeRaysThatAreSentAgainForEverWouldBeCalledALivelock) {
     const Workshop workshop;
     const Finished finished =
-        run_deadlock_tb(workshop, "--networks shared --ray-store 1 --quiet -o results/a");
+        run_deadlock_tb(workshop, "--buffer 1 --networks shared --ray-store 1 --quiet -o results/a");
     EXPECT_EQ(finished.exit_code, 3);
     EXPECT_TRUE(contains(finished.err, "deadlock_tb: warning: the run may end in a deadlock: "))
         << finished.err;
@@ -121,7 +122,7 @@ TEST(DeadlockTb, FindsAKnotLongBeforeRaysThatAreSentAgainForEverWouldBeCalledALi
 
 TEST(DeadlockTb, LeavesNoGraphOfAnEarlierRunBesideAResultWithoutOne) {
     const Workshop workshop;
-    report(workshop, "--networks shared --recovery none", 3);
+    report(workshop, "--buffer 1 --networks shared --recovery none", 3);
     report(workshop, "");  // expects a.json and a.toml alone
 }
 
@@ -134,7 +135,7 @@ Finished check_knots(const Workshop& workshop, const fs::path& graph) {
 
 TEST(DeadlockTb, ItsKnotsAreAcceptedByASearchOfTheSweepsOwn) {
     const Workshop workshop;
-    report(workshop, "--networks split --recovery none --cells 24x24 --seed 1", 3);
+    report(workshop, "--buffer 1 --networks split --recovery none --cells 24x24 --seed 1", 3);
     const fs::path graph = workshop.result("a.waits.json");
     const Finished accepted = check_knots(workshop, graph);
     EXPECT_EQ(accepted.exit_code, 0) << accepted.err;

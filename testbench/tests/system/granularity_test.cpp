@@ -75,10 +75,10 @@ TEST(Granularity, DoesNotShowInSyntheticTraffic) {
     std::string first;
     for (const Words& granularity : every_granularity) {
         SCOPED_TRACE(granularity.back());
-        const Finished finished =
-            workshop.run_program(RAYCELL_DEADLOCK_TB, joined({"--cells", "24x31", "--networks", "shared",
-                                                              "-o", workshop.result("a").string(), "--quiet"},
-                                                             granularity));
+        const Finished finished = workshop.run_program(
+            RAYCELL_DEADLOCK_TB, joined({"--cells", "24x31", "--buffer", "1", "--networks", "shared", "-o",
+                                         workshop.result("a").string(), "--quiet"},
+                                        granularity));
         EXPECT_EQ(finished.exit_code, 3) << finished.err;
         const std::string now = telling(workshop, {});
         if (first.empty()) first = now;

@@ -131,7 +131,7 @@ TEST(Schedule, IsEqualForEqualConfigurationsAndForWhatIsNoTime) {
     EXPECT_EQ(of({}), first);
     EXPECT_EQ(of({"--clock-mhz", "100"}), first) << "cycles don't know how long they last";
     EXPECT_EQ(of({"--truth"}), first);
-    EXPECT_EQ(of({"--buffer", "1", "--ray-store", "8", "--networks", "half"}), first)
+    EXPECT_EQ(of({"--buffer", "2", "--ray-store", "8", "--networks", "half"}), first)
         << "the defaults, spelt out";
 }
 
@@ -139,7 +139,9 @@ TEST(Schedule, DiffersWithBuffersRayStoreNetworksAndLinks) {
     const Workshop workshop;
     std::set<std::string> schedules;
     const std::vector<Words> all = {{},
-                                    {"--buffer", "2"},
+                                    {"--buffer", "1"},
+                                    {"--traversal-units", "1"},
+                                    {"--loading-units", "4"},
                                     {"--ray-store", "5"},
                                     {"--networks", "quadrant"},
                                     {"--link-bits", "400"},

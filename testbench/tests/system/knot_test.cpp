@@ -61,13 +61,13 @@ TEST_P(Deadlock, IsReportedWithAKnotThatASearchOverTheDumpedGraphAccepts) {
 
 INSTANTIATE_TEST_SUITE_P(
     Kind, Deadlock,
-    ::testing::Values(Locked{"shared_buffers", "facing_mirrors", {"--networks", "shared"}},
-                      Locked{"split_buffers", "still_life", {"--networks", "split"}},
+    ::testing::Values(Locked{"shared_buffers", "facing_mirrors", {"--buffer", "1", "--networks", "shared"}},
+                      Locked{"split_buffers", "still_life", {"--buffer", "1", "--networks", "split"}},
                       Locked{"one_slot", "facing_mirrors", {"--ray-store", "1", "--recovery", "none"}},
                       Locked{"both",
                              "still_life",
-                             {"--networks", "split", "--ray-store", "1", "--recovery", "none", "--slots",
-                              "free"}}),
+                             {"--buffer", "1", "--networks", "split", "--ray-store", "1", "--recovery",
+                              "none", "--slots", "free"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Livelock, HasAWaitForGraphWithoutAKnotAndNoPictureOfOne) {

@@ -181,15 +181,15 @@ TEST(LoadedArrayFile, IsNotLeftHalfWritten) {
 
 TEST(LoadedArrayFile, OfALockedRunServesItsSecondRun) {
     const Workshop workshop;
-    const Words words{"--cells",           "32x32",        "--networks",   "split",
+    const Words words{"--cells",           "32x32",        "--buffer",     "1", "--networks", "split",
                       "--vcd-on-deadlock", "--save-array", "results/array"};
     const Finished finished = workshop.render(own_scene("facing_mirrors.nff"), words, "a");
     ASSERT_EQ(finished.exit_code, 3) << finished.err;
     EXPECT_TRUE(fs::exists(workshop.result("a.vcd")));
-    const Finished again = workshop.render(
-        own_scene("facing_mirrors.nff"),
-        {"--cells", "32x32", "--networks", "split", "--vcd-on-deadlock", "--load-array", "results/array"},
-        "b");
+    const Finished again = workshop.render(own_scene("facing_mirrors.nff"),
+                                           {"--cells", "32x32", "--buffer", "1", "--networks", "split",
+                                            "--vcd-on-deadlock", "--load-array", "results/array"},
+                                           "b");
     ASSERT_EQ(again.exit_code, 3) << again.err;
     EXPECT_EQ(told(workshop, "b"), told(workshop, "a"));
     EXPECT_EQ(read_text(workshop.result("b.vcd")), read_text(workshop.result("a.vcd")));

@@ -134,7 +134,7 @@ TEST(LoadingTb, ChecksTeapotAtTheDefaults) {
     // A cell takes long to make a voxel, and the fullest one has to make many.
     const Json whole = report(workshop, {teapot});
     EXPECT_TRUE(contains(whole.at("bound").at("of").get<std::string>(), "voxels of cell_"));
-    EXPECT_GT(efficiency(whole), 0.8);
+    EXPECT_GT(efficiency(whole), 0.7);
     // Where a span waits in each cell until the voxels before it are made, the same work takes far longer.
     const Json waiting = report(workshop, {teapot, "--load-queue", "1"});
     EXPECT_EQ(waiting.at("bound").at("cycles"), whole.at("bound").at("cycles"));
@@ -145,14 +145,15 @@ TEST(LoadingTb, ChecksTeapotAtTheDefaults) {
     // lane's geometry, or its narrow wires.
     const Json single = report(workshop, {teapot, "--datapath", "estimate", "--feed-lanes", "1"});
     EXPECT_EQ(single.at("bound").at("of"), "geometry");
-    const Words narrow = {teapot, "--datapath", "estimate", "--feed-lanes", "1", "--feed-bits", "20"};
+    const Words narrow = {teapot, "--datapath", "estimate", "--feed-lanes", "1", "--feed-bits",
+                          "20",   "--buffer",   "1"};
     const Json json = report(workshop, narrow);
     EXPECT_EQ(json.at("bound").at("of"), "precomputation.out");
     // Messages are short: what lies between two of them, a row's work and a free place, counts for more.
     EXPECT_GT(efficiency(json), 0.65);
     // Trapezes are wide: with twice the buffer, a row takes the next one while it still sends the last one
     // on.
-    const Json deeper = report(workshop, joined(narrow, {"--buffer", "2"}));
+    const Json deeper = report(workshop, joined(Words(narrow.begin(), narrow.end() - 1), {"2"}));
     EXPECT_GT(efficiency(deeper), efficiency(json));
     EXPECT_EQ(deeper.at("bound").at("cycles"), json.at("bound").at("cycles"));
 }

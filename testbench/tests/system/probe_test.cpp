@@ -113,7 +113,7 @@ TEST(Probe, AWindowBehindTheEndMakesADumpWithoutValuesAndAWarning) {
 
 TEST(Probe, OfADeadlockShowsSomeCellsAndTheCyclesBeforeIt) {
     const Workshop workshop;
-    const Words words = {"--cells", "24x24", "--networks", "shared"};
+    const Words words = {"--cells", "24x24", "--buffer", "1", "--networks", "shared"};
     const Json plain = workshop.report(own_scene("facing_mirrors.nff"), words, 3);
     const Json dumped = workshop.report(own_scene("facing_mirrors.nff"),
                                         joined(words, {"--vcd-on-deadlock", "--vcd-last", "700"}), 3);

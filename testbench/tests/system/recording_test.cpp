@@ -91,8 +91,9 @@ TEST(Film, VoxelsNeverGetFewer) {
 
 TEST(Film, ItsLastFrameHasTheMessagesOfADeadlock) {
     const Workshop workshop;
-    const Json report = workshop.report(own_scene("facing_mirrors.nff"),
-                                        {"--networks", "shared", "--cells", "32x32", "--film", "64"}, 3);
+    const Json report =
+        workshop.report(own_scene("facing_mirrors.nff"),
+                        {"--buffer", "1", "--networks", "shared", "--cells", "32x32", "--film", "64"}, 3);
     const Json film = film_of(workshop);
     EXPECT_EQ(sums_of(film, "answers").back(), report.at("messages").at("answers").at("in_flight"));
     // The rest is in slots, and in the exterior.
@@ -182,9 +183,10 @@ TEST(RayTable, TrafficWithoutASceneHasOneToo) {
 
 TEST(Recording, TheRunRepeatedForItsWaveformsRecordsNothing) {
     const Workshop workshop;
-    workshop.report(
-        own_scene("facing_mirrors.nff"),
-        {"--networks", "split", "--cells", "32x32", "--film", "20", "--rays", "--vcd-on-deadlock"}, 3);
+    workshop.report(own_scene("facing_mirrors.nff"),
+                    {"--buffer", "1", "--networks", "split", "--cells", "32x32", "--film", "20", "--rays",
+                     "--vcd-on-deadlock"},
+                    3);
     for (const std::string& name : workshop.results()) EXPECT_EQ(name.rfind("a.", 0), 0u) << name;
     EXPECT_TRUE(fs::exists(workshop.result("a.vcd")));
     EXPECT_TRUE(fs::exists(workshop.result("a.film.json")));

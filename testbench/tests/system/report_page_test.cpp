@@ -49,8 +49,8 @@ TEST(ReportPage, ShowsACompletedRun) {
 
 TEST(ReportPage, ShowsWhatIsStuckInADeadlock) {
     const Workshop workshop;
-    const Json report =
-        workshop.report(own_scene("facing_mirrors.nff"), {"--networks", "shared", "--cells", "32x32"}, 3);
+    const Json report = workshop.report(own_scene("facing_mirrors.nff"),
+                                        {"--buffer", "1", "--networks", "shared", "--cells", "32x32"}, 3);
     const std::string page = page_of(workshop);
     expect_self_contained(page);
     EXPECT_TRUE(contains(page, "class=\"verdict deadlock\">deadlock<"));
@@ -66,8 +66,8 @@ TEST(ReportPage, ShowsWhatIsStuckInADeadlock) {
 
 TEST(ReportPage, DrawsAKnotsRing) {
     const Workshop workshop;
-    Json report =
-        workshop.report(own_scene("facing_mirrors.nff"), {"--networks", "shared", "--cells", "32x32"}, 3);
+    Json report = workshop.report(own_scene("facing_mirrors.nff"),
+                                  {"--buffer", "1", "--networks", "shared", "--cells", "32x32"}, 3);
     Json knot = {
         {"formed", 1234}, {"cells", Json::array()}, {"nodes", Json::array()}, {"edges", Json::array()}};
     const int ring[4][2] = {{4, 5}, {5, 5}, {5, 6}, {4, 6}};
@@ -121,7 +121,7 @@ TEST(ReportPage, ShowsTwoRunsBesideEachOther) {
     const std::string page = read_text(workshop.result("a.and.b.html"));
     expect_self_contained(page);
     for (const std::string part :
-         {"<td>--buffer</td><td>1</td><td>3</td>", "second less first", "What differs", "line second"}) {
+         {"<td>--buffer</td><td>2</td><td>3</td>", "second less first", "What differs", "line second"}) {
         EXPECT_TRUE(contains(page, part)) << part;
     }
     const Finished other = workshop.run_program(script, {"report", "results/a.json", "results/c.json"});
@@ -132,7 +132,8 @@ TEST(ReportPage, ShowsTwoRunsBesideEachOther) {
 TEST(ReportPage, OfTwoRunsSaysWhatIsStuckInTheOneThatLocks) {
     const Workshop workshop;
     const Words mirrors = {"--cells", "32x32"};
-    workshop.report(own_scene("facing_mirrors.nff"), joined(mirrors, {"--networks", "split"}), 3);
+    workshop.report(own_scene("facing_mirrors.nff"),
+                    joined(mirrors, {"--buffer", "1", "--networks", "split"}), 3);
     workshop.report(own_scene("facing_mirrors.nff"), mirrors, 0, "b");
     const Finished finished = workshop.run_program(script, {"report", "results/a.json", "results/b.json"});
     ASSERT_EQ(finished.exit_code, 0) << finished.err;

@@ -51,8 +51,8 @@ Json expect_verdict(const Workshop& workshop, const std::string& scene, const Wo
 
 TEST(Verdict, OneNetworkForAllDeadlocksOnMirrors) {
     const Workshop workshop;
-    const Json report =
-        expect_verdict(workshop, "facing_mirrors.nff", {"--networks", "shared"}, "deadlock", 3);
+    const Json report = expect_verdict(workshop, "facing_mirrors.nff",
+                                       {"--buffer", "1", "--networks", "shared"}, "deadlock", 3);
     EXPECT_GE(report.at("deadlock").at("report").size(), 2u);
     EXPECT_LT(report.at("cycles").at("trace").get<double>(), 1e7);  // counted up to where it stopped
     EXPECT_GT(report.at("ray_store").at("mean").get<double>(), 0);  // stuck rays count
@@ -65,13 +65,14 @@ TEST(Verdict, OneNetworkForAllDeadlocksOnMirrors) {
 
 TEST(Verdict, RaysApartFromAnswersDeadlockOnMirrors) {
     const Workshop workshop;
-    expect_verdict(workshop, "facing_mirrors.nff", {"--networks", "split"}, "deadlock", 3);
+    expect_verdict(workshop, "facing_mirrors.nff", {"--buffer", "1", "--networks", "split"}, "deadlock", 3);
 }
 
 TEST(Verdict, ShadowBitsCastOverOneNetworkDeadlock) {
     const Workshop workshop;
-    const Json report = expect_verdict(workshop, "still_life.nff",
-                                       {"--networks", "shared", "--shadows", "precast"}, "deadlock", 3);
+    const Json report =
+        expect_verdict(workshop, "still_life.nff",
+                       {"--buffer", "1", "--networks", "shared", "--shadows", "precast"}, "deadlock", 3);
     EXPECT_EQ(report.at("cycles").at("trace"), 0) << "it never came to tracing";
 }
 
@@ -85,7 +86,7 @@ TEST(Verdict, AStoreOfOneWithoutRecoveryDeadlocks) {
 TEST(Verdict, MessagesThatCanNeverMoveAgainAreADeadlockWhileOthersArePostponed) {
     // Some trees are postponed for ever, but the ring of full buffers is a knot all the same.
     const Workshop workshop;
-    expect_verdict(workshop, "still_life.nff", {"--networks", "shared"}, "deadlock", 3);
+    expect_verdict(workshop, "still_life.nff", {"--buffer", "1", "--networks", "shared"}, "deadlock", 3);
 }
 
 TEST(Verdict, AStoreOfOneIsALivelockWhereTreesComeBackToTheirCells) {
@@ -129,8 +130,8 @@ TEST(Verdict, AMachineThatMayNeverEndIsWarnedOfBeforeItRunsWithTheOptionThatHelp
     EXPECT_EQ(many.bound.at("options"), "");
 
     for (const auto& [words, option] : std::vector<std::pair<Words, std::string>>{
-             {{"--networks", "shared"}, "--networks half"},
-             {{"--networks", "split"}, "--networks half"},
+             {{"--buffer", "1", "--networks", "shared"}, "--networks half"},
+             {{"--buffer", "1", "--networks", "split"}, "--networks half"},
              {{"--recovery", "none", "--ray-store", "200"}, "--recovery postpone"},
              {{"--slots", "free"}, "--slots reserved"}}) {
         const Told other = told(workshop, words);

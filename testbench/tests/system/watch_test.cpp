@@ -233,9 +233,9 @@ TEST(Watch, ARayIsWatchedWithItsDescendantsAlone) {
 
 TEST(Watch, ARayOfAStuckRunIsNotHome) {
     const Workshop workshop;
-    const Lives lives =
-        watch(workshop, "facing_mirrors.nff",
-              {"--networks", "shared", "--cells", "32x32", "--watch-pixel", "0..31,0..31"}, 3);
+    const Lives lives = watch(
+        workshop, "facing_mirrors.nff",
+        {"--buffer", "1", "--networks", "shared", "--cells", "32x32", "--watch-pixel", "0..31,0..31"}, 3);
     EXPECT_TRUE(std::any_of(lives.summaries.begin(), lives.summaries.end(),
                             [](const std::string& line) { return contains(line, "(not home)"); }));
 }

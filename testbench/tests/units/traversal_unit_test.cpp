@@ -47,7 +47,7 @@ TEST(TraversalUnit, KeepsARayInTestUntilItsTimeIsOver) {
     Wakeup wakeup;
     EXPECT_TRUE(finished(units, 49, wakeup).empty());
     EXPECT_EQ(wakeup.next, 50u);
-    EXPECT_EQ(units[0].packet, &test.packet);
+    EXPECT_EQ(units.packet(0), &test.packet);
     EXPECT_EQ(finished(units, 50, wakeup), std::vector<std::uint32_t>{3});
     EXPECT_EQ(test.packet.stage, RayPacket::Stage::decided);
     EXPECT_EQ(test.packet.decided, 50u);
@@ -60,7 +60,7 @@ TEST(TraversalUnit, LooksForTheNextRayBehindTheOneItTestedLast) {
     EXPECT_EQ(units.next(), 0u);
     units.start(test.packet, 3, 50);
     EXPECT_EQ(units.next(), 4u);
-    EXPECT_EQ(units.last().place, 3u);
+    EXPECT_EQ(units.place(units.last()), 3u);
 }
 
 TEST(TraversalUnit, TestsAsManyRaysAtATimeAsThereAreUnits) {
@@ -76,7 +76,8 @@ TEST(TraversalUnit, TestsAsManyRaysAtATimeAsThereAreUnits) {
     EXPECT_EQ(finished(units, 40, wakeup), std::vector<std::uint32_t>{0}) << "the later test was shorter";
     EXPECT_EQ(wakeup.next, 50u);
     units.start(third, 1, 50);
-    EXPECT_EQ(units.last().packet, &third);
+    EXPECT_EQ(units.packet(units.last()), &third);
+    EXPECT_EQ(units.packet(1), &third) << "the unit that was free";
     EXPECT_EQ(finished(units, 50, wakeup), (std::vector<std::uint32_t>{3, 1}));
     EXPECT_TRUE(units.idle());
 }
