@@ -24,6 +24,7 @@
 #include "testbench/common/machine_run.hpp"
 #include "testbench/common/new_file.hpp"
 #include "testbench/common/picture_file.hpp"
+#include "testbench/common/presets.hpp"
 #include "testbench/common/probe_run.hpp"
 #include "testbench/common/ray_watch.hpp"
 #include "testbench/common/recording.hpp"
@@ -394,6 +395,7 @@ Command add_render_command(CLI::App& program) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* app = program.add_subcommand("render", "Renders a scene with the simulated machine");
     auto table = std::make_shared<OptionTable>(*app);
+    add_preset_option(*app);
     app->add_option("--config", options->config,
                     "options from a file as a run writes it; the command line has precedence")
         ->type_name("FILE");

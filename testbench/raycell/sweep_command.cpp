@@ -11,6 +11,7 @@
 #include "testbench/common/configuration.hpp"
 #include "testbench/common/machine_run.hpp"
 #include "testbench/common/new_file.hpp"
+#include "testbench/common/presets.hpp"
 #include "testbench/common/scene_input.hpp"
 #include "testbench/common/signals.hpp"
 #include "testbench/common/traffic_options.hpp"
@@ -40,9 +41,11 @@ struct SweptProgram {
         app.name(synthetic ? "deadlock_tb" : "raycell render");
         if (synthetic) {
             add_traffic_options(table, traffic);
+            add_preset_option(app);
             path = program_beside("deadlock_tb");
         } else {
             add_render_options(table, render);
+            add_preset_option(app);
             path = program_beside("raycell");
         }
     }
