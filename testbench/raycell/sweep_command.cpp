@@ -139,10 +139,14 @@ int run(SweepOptions options, std::vector<std::string> words) {
     if (options.seeds > 0) words.push_back("--seed=1.." + std::to_string(options.seeds));
     SweptProgram program(options.synthetic);
     const SweepDesign design = read_sweep(words, program.app);
-    const bool scene = std::any_of(design.axes.begin(), design.axes.end(),
-                                   [](const SweepAxis& axis) { return axis.option == "scene"; });
-    if (!options.synthetic && !scene)
+    const auto has = [&](const std::string& option) {
+        return std::any_of(design.axes.begin(), design.axes.end(),
+                           [&](const SweepAxis& axis) { return axis.option == option; });
+    };
+    if (!options.synthetic && !has("scene") && !has("frames"))
         throw UsageError("sweep: no scene given; expected one or several, or --synthetic");
+    if (has("frames") && !has("frame"))
+        throw UsageError("sweep: --frames: a run is of one frame; expected --frame K, or --frame 1..N");
     const std::string folder = options.prefix + ".runs";
     const std::vector<SweepRun> runs = runs_of(design, options, program.path, folder);
     if (options.dry_run) {
