@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 
 VIEWS = [((0, 1, 4), 36.86), ((0.3, 1.1, 3.7), 38), ((-0.2, 0.9, 3.9), 40)]
 
@@ -217,6 +218,16 @@ def sets(row):
                    "--shadows", "per-hit", "--cells", "16x16", "-o", "out/locked", exit_code=3)
     assert "verdict deadlock; 2 frames" in told.stdout and "frame 1" in told.stderr, (told.stdout, told.stderr)
     assert not [name for name in row.files() if "part" in name], row.files()
+    # A signal ends the row and its frames; nothing of them is left.
+    kept = row.files()
+    child = subprocess.Popen([row.program, "render", str(row.scene), "--frames", "list.frames", "--cells", "96x96", "-o",
+                              "out/ended"], cwd=row.folder, stderr=subprocess.PIPE, text=True)
+    while not list((row.folder / "out").glob("ended.frames.part*/0001*")) and child.poll() is None:
+        time.sleep(0.01)
+    child.terminate()
+    said = child.communicate()[1]
+    assert child.returncode == 5 and "interrupted; no files were written" in said, (child.returncode, said)
+    assert row.files() == kept, row.files()
 
 
 def main(case, program, scenes):
