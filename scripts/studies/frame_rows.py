@@ -47,6 +47,7 @@ def span(values, digits=0):
 
 
 def line(program, scene):
+    """A line of the table; how many frames are the same in the reversed row, and of how many."""
     frames = row(program, scene, walk(scene))
     back = row(program, scene, walk(scene)[::-1])
     each, schedule = frames["each"], frames["schedule"]
@@ -56,23 +57,19 @@ def line(program, scene):
              f"{schedule['cycles_per_frame']:,.0f}", schedule["binds"], f"{schedule['one_store']['cycles_per_frame']:,.0f}",
              span([f["accuracy"]["psnr_db"] for f in each], 1), span([f["voxels"]["max_bits_per_cell"] for f in each]),
              f"{same} of {len(each)}"]
-    return "| " + " | ".join(cells) + " |"
+    return "| " + " | ".join(cells) + " |", same, len(each)
 
 
 def text(root, program):
     """The section of the document. Throws programs.Failed for a row that does not complete."""
     head = ["scene", "verdicts", "cycles, load", "cycles, trace", "cycles a frame in a row", "bound by", "with one store",
             "PSNR, dB", "bits of the fullest cell", "frames unchanged in the reversed row"]
-    rows = [line(program, root / "scenes" / f"{scene}.nff") for scene in SCENES]
-    return f"""
-## frames in a row
-
-the viewer walks round the scene, {len(DEGREES)} frames from {DEGREES[0]} to {DEGREES[-1]} degrees, {CELLS} cells (`raycell render --frames`).
-
-| {" | ".join(head)} |
-|{"---|" * len(head)}
-""" + "\n".join(rows) + """
-
-Boundary: every frame completes; what a frame takes and how near it is to the truth is its view's own, and the same wherever it stands in the row
-Treatment: documented: a frame is loaded into a store of its own, so none sees another; the store must fit the fullest cell of all frames
-"""
+    rows, same, count = zip(*(line(program, root / "scenes" / f"{scene}.nff") for scene in SCENES))
+    return "\n".join([
+        "", "## frames in a row", "",
+        f"the viewer walks round the scene, {len(DEGREES)} frames from {DEGREES[0]} to {DEGREES[-1]} degrees, {CELLS} cells "
+        "(`raycell render --frames`).",
+        "", "| " + " | ".join(head) + " |", "|" + "---|" * len(head), *rows, "",
+        f"Boundary: every frame completes; {sum(same)} of {sum(count)} have the same picture and schedule in the reversed row",
+        "Treatment: documented: a frame is loaded into a store of its own, so none sees another; the store must fit the "
+        "fullest cell of all frames", ""])
