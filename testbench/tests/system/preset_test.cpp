@@ -79,8 +79,11 @@ TEST(Preset, PaperIsTheMachineThatThePaperDescribes) {
 
 TEST(Preset, ThePrototypeHoldsSixteenVoxelsInEachOfItsCells) {
     const Workshop workshop;
-    const Json report = workshop.report(own_scene("still_life.nff"), {"--preset", "prototype"}, 4);
+    // At its own rung no cell needs so many; at `edge` some need more.
+    const Json report = workshop.report(own_scene("still_life.nff"),
+                                        {"--preset", "prototype", "--hit", "edge", "--networks", "half"}, 4);
     EXPECT_EQ(report["pixels"]["all"], 256);
+    EXPECT_EQ(report["config"]["depth"], 1024);
     EXPECT_EQ(report["voxels"]["max_per_cell"], 16);
     EXPECT_EQ(report["verdict"], "capacity");
 }
