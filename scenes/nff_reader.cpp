@@ -137,7 +137,6 @@ class NffParser {
     }
 
     void view();
-    void check_view(const View& view) const;
 
     void light() {
         std::array<double, 6> n{};
@@ -296,28 +295,11 @@ void NffParser::view() {
                     entity_, "'resolution', two whole numbers from 1 to 65536", 1, max_resolution));
         }
     }
-    check_view(v);
+    if (const std::optional<ViewFault> fault = fault_of(v)) fail(fault->what, fault->expected);
     warn_if_late();
     if (!in_order) warn("order of v", "the lines of 'v' are not in the order of the format");
     if (scene_.view) warn("second view", "a second 'v'; the last one holds");
     scene_.view = v;
-}
-
-void NffParser::check_view(const View& v) const {
-    if (v.angle < min_angle || v.angle > max_angle) {
-        fail("'angle' of the view is out of range", "0.001 to 179.99 degrees");
-    }
-    if (v.hither < 0) fail("'hither' of the view is negative", "a distance, 0 or more");
-    const double farthest = std::max(largest_component(v.from), largest_component(v.at));
-    const auto forward = unit(v.at - v.from);
-    if (!forward || largest_component(v.at - v.from) < min_relative_size * farthest) {
-        fail("'from' and 'at' of the view coincide", "two points");
-    }
-    const auto up = unit(v.up);
-    if (!up) fail("'up' of the view has no length", "a direction");
-    if (glm::length(glm::cross(*forward, *up)) < 1e-9) {
-        fail("'up' of the view is parallel to its direction", "another direction");
-    }
 }
 
 Scene read(TextSource source, const std::string& scene_name, Diagnostics& diagnostics) {
@@ -328,6 +310,24 @@ Scene read(TextSource source, const std::string& scene_name, Diagnostics& diagno
 }
 
 }  // namespace
+
+std::optional<ViewFault> fault_of(const View& v) {
+    if (v.angle < min_angle || v.angle > max_angle) {
+        return ViewFault{"'angle' of the view is out of range", "0.001 to 179.99 degrees"};
+    }
+    if (v.hither < 0) return ViewFault{"'hither' of the view is negative", "a distance, 0 or more"};
+    const double farthest = std::max(largest_component(v.from), largest_component(v.at));
+    const auto forward = unit(v.at - v.from);
+    if (!forward || largest_component(v.at - v.from) < min_relative_size * farthest) {
+        return ViewFault{"'from' and 'at' of the view coincide", "two points"};
+    }
+    const auto up = unit(v.up);
+    if (!up) return ViewFault{"'up' of the view has no length", "a direction"};
+    if (glm::length(glm::cross(*forward, *up)) < 1e-9) {
+        return ViewFault{"'up' of the view is parallel to its direction", "another direction"};
+    }
+    return std::nullopt;
+}
 
 Scene read_nff(const std::filesystem::path& path, Diagnostics& diagnostics) {
     return read(TextSource(path), printable_path(path.filename()), diagnostics);

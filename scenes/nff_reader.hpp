@@ -13,6 +13,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,13 @@ namespace raycell {
 
 /// Largest resolution that a view may ask for, in each direction.
 constexpr int max_resolution = 65536;
+
+/// Why a view can't be used.
+struct ViewFault {
+    std::string what;
+    std::string expected;
+};
+std::optional<ViewFault> fault_of(const View& view);
 
 /// Reads a scene file. Scene::view is empty if the file has none; Scene::name is the file's name without
 /// folder. Time is linear in the file's size, memory in the scene's. Throws InputError.

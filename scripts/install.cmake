@@ -1,4 +1,4 @@
-# cmake --install: libraries and headers for projects of others, found by find_package(Raycell).
+# cmake --install: libraries and headers for projects of others, found by find_package(Raycell); programs and presets.
 include(CMakePackageConfigHelpers)
 foreach(room model cells pipeline)
   add_library(raycell::${room} ALIAS raycell_${room})
@@ -12,3 +12,7 @@ configure_package_config_file(scripts/RaycellConfig.cmake.in ${CMAKE_BINARY_DIR}
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/RaycellConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/RaycellConfig.cmake ${CMAKE_BINARY_DIR}/RaycellConfigVersion.cmake
     DESTINATION lib/cmake/Raycell)
+if(RAYCELL_PROGRAMS)
+  install(TARGETS raycell deadlock_tb loading_tb cell_tb RUNTIME DESTINATION bin)
+  install(DIRECTORY presets DESTINATION share/raycell FILES_MATCHING PATTERN "*.toml")
+endif()

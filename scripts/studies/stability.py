@@ -4,7 +4,7 @@ import csv
 import pathlib
 import tempfile
 
-from studies import programs
+from studies import frame_rows, programs
 
 COLOURS = {"exact": "black", "fixed 32": "tab:purple", "fixed 24": "tab:blue", "fixed 20": "tab:green",
            "fixed 16": "tab:orange", "fixed 12": "tab:red", "fixed 8": "tab:brown",
@@ -209,7 +209,7 @@ def main(root, words):
     parser = argparse.ArgumentParser(prog="scripts/study stability", description=__doc__)
     parser.add_argument("seed", nargs="?", default="1", metavar="SEED", help="default: 1")
     parser.add_argument("--program", type=pathlib.Path, default=root / "build" / "stability_tb",
-                        help="the stability_tb to run")
+                        help="the stability_tb to run; raycell is beside it")
     programs.add_out(parser, root)
     options = parser.parse_args(words)
     out = programs.made(options.out)
@@ -217,6 +217,7 @@ def main(root, words):
         run = programs.run(options.program, "--csv", folder, "--seed", options.seed)
         draw(pathlib.Path(folder), out / "stability.png")
     first, tables = run.output.split("\n", 1)
+    tables += frame_rows.text(root, options.program.with_name("raycell"))
     text = f"""# Where the methods break
 
 Made by `scripts/study stability`; {first.lower()}. `exact` is double precision, `fixed N` words of N bits; lengths

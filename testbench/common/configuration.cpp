@@ -38,7 +38,7 @@ class Reader {
         const bool word = key.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string::npos;
         const CLI::Option* known = word ? app_.get_option_no_throw("--" + key) : nullptr;
         if (!known && word && other_ && other_->get_option_no_throw("--" + key)) return;
-        if (!known || key == "config" || key == "help") {
+        if (!known || key == "config" || key == "preset" || key == "help") {
             fail(node.source(), "unknown key '" + printable(key) + "'; keys are the options of '" +
                                     app_.get_name() + "' without their dashes, see --help");
         }
@@ -62,8 +62,8 @@ class Reader {
             word = *text;
             // An empty string is the default of file names. For other options it is an error, which the
             // option's own check finds.
-            if (word.empty() &&
-                (key == "view" || key == "scene" || key == "save-array" || key == "load-array"))
+            if (word.empty() && (key == "view" || key == "scene" || key == "frames" || key == "save-array" ||
+                                 key == "load-array"))
                 return;
         } else if (const auto whole = node.value_exact<std::int64_t>()) {
             word = std::to_string(*whole);
@@ -87,16 +87,22 @@ class Reader {
 
 }  // namespace
 
-std::string configuration_named(const std::vector<std::string>& words) {
-    std::string path;
+std::optional<std::string> last_word_of(const std::vector<std::string>& words, const std::string& option,
+                                        const std::string& value) {
+    const std::string name = "--" + option;
+    std::optional<std::string> last;
     for (std::size_t i = 1; i < words.size(); ++i) {
-        if (words[i].rfind("--config=", 0) == 0) path = words[i].substr(9);
-        if (words[i] == "--config") {
-            if (i + 1 == words.size()) throw UsageError("--config: expected a file");
-            path = words[i + 1];
+        if (words[i].rfind(name + "=", 0) == 0) last = words[i].substr(name.size() + 1);
+        if (words[i] == name) {
+            if (i + 1 == words.size()) throw UsageError(name + ": expected " + value);
+            last = words[i + 1];
         }
     }
-    return path;
+    return last;
+}
+
+std::string configuration_named(const std::vector<std::string>& words) {
+    return last_word_of(words, "config", "a file").value_or("");
 }
 
 std::vector<std::string> arguments_from_file(const std::string& path, const CLI::App& app,
@@ -107,6 +113,14 @@ std::vector<std::string> arguments_from_file(const std::string& path, const CLI:
     std::ostringstream text;
     text << file.rdbuf();
     return arguments_from_text(text.str(), path, app, other);
+}
+
+std::vector<std::string> arguments_from_render_file(const std::string& path, const CLI::App& app) {
+    RenderOptions ignored;
+    CLI::App render;
+    OptionTable table(render);
+    add_render_options(table, ignored);
+    return arguments_from_file(path, app, &render);
 }
 
 std::vector<std::string> arguments_from_text(const std::string& text, const std::string& name,

@@ -1,5 +1,6 @@
 #include "testbench/common/options.hpp"
 
+#include "scenes/frame_list.hpp"
 #include "testbench/common/ray_watch.hpp"
 
 namespace raycell {
@@ -270,6 +271,10 @@ void add_placement_options(OptionTable& table, RenderOptions& options) {
     table.text("scene", options.scene, "FILE", "scene: .nff or .obj");
     table.positional("file", options.scene, "the same; has precedence over --scene");
     table.text("view", options.view, "FILE.nff", "take background, view and sources from this file");
+    table.text("frames", options.frames, "FILE",
+               "frames in a row: a list of views and scenes, one a line; all of them, or that of --frame");
+    table.number("frame", options.frame, 0, int(max_frames),
+                 "this one of --frames alone, from 1; 0: all, which only render can");
     table.choice("viewer", p.viewer, {{"scene", ViewerMode::scene}, {"infinity", ViewerMode::infinity}},
                  "viewer at the scene's distance, or at infinity (axial primary rays)");
     table.size("cells", p.width, p.height, "size of the array, one cell per pixel");

@@ -105,6 +105,8 @@ struct RenderOptions {
     std::string scene;
     std::string prefix = "out";
     std::string view;
+    std::string frames;  ///< file of a list of frames; empty: none
+    int frame = 0;       ///< of the list, from 1; 0: all
     PictureSettings picture;
     MachineSettings machine;
     Engine engine = Engine::timed;

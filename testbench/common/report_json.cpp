@@ -6,6 +6,7 @@
 #include "model/machine/bound.hpp"
 #include "model/machine/feed_bits.hpp"
 #include "model/machine/losses.hpp"
+#include "model/machine/second_store_bits.hpp"
 #include "model/machine/storage_bits.hpp"
 #include "model/picture/metrics.hpp"
 #include "testbench/common/knot_report.hpp"
@@ -205,6 +206,12 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                             {"ray_store", stored_bits.ray_store},
                             {"registers", registers_json(register_bits(picture, machine, formats, sources))},
                             {"total", stored_bits.total()}};
+    const SecondStoreBits second = second_store_bits(picture, machine, formats, sources,
+                                                     std::max(c.most_load_bits, storage.max_cell_bits));
+    json["second_store_bits"] = {{"store", second.store},     {"buffer", second.buffer},
+                                 {"output", second.output},   {"control", second.control},
+                                 {"latches", second.latches}, {"total", second.total()},
+                                 {"wires", second.wires}};
     const FeedBits feed = feed_bits(picture, machine, formats);
     json["feed_bits"] = {{"buffers", feed.buffers},
                          {"registers", feed.registers},

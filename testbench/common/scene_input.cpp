@@ -20,24 +20,52 @@ void spare(const OutputSet& outputs, const std::string& input, const char* what)
     }
 }
 
+/// The chosen line of --frames; without the option one that changes nothing.
+FrameLine frame_of(const RenderOptions& options) {
+    if (options.frames.empty()) {
+        if (options.frame == 0) return {};
+        throw UsageError("--frame " + std::to_string(options.frame) +
+                         ": there is no list of frames; expected --frames FILE");
+    }
+    const std::vector<FrameLine> frames = read_frame_list(options.frames);
+    const std::string allowed = "expected --frame from 1 to " + std::to_string(frames.size());
+    if (options.frame == 0)
+        throw UsageError("--frames: only 'raycell render' takes all frames of a list; " + allowed);
+    if (std::size_t(options.frame) > frames.size())
+        throw UsageError("--frame " + std::to_string(options.frame) + ": " + options.frames +
+                         " has no such frame; " + allowed);
+    return frames[std::size_t(options.frame) - 1];
+}
+
 }  // namespace
 
 void spare_inputs(const RenderOptions& options, const OutputSet& outputs) {
     if (!options.scene.empty()) spare(outputs, options.scene, "scene");
     if (!options.view.empty()) spare(outputs, options.view, "view");
+    if (!options.frames.empty()) spare(outputs, options.frames, "list of frames");
     if (!options.load_array.empty()) spare(outputs, options.load_array, "loaded array");
     if (!options.config.empty() && !same_file(options.config, options.prefix + ".toml"))
         spare(outputs, options.config, "configuration");
 }
 
-CellScene read_and_place(const RenderOptions& options, const OutputSet& outputs) {
-    spare_inputs(options, outputs);
-    if (options.scene.empty()) throw UsageError("no scene given; expected a file .nff or .obj, see --help");
-    Diagnostics diagnostics;
+Scene read_frame(const RenderOptions& options, const FrameLine& frame, const OutputSet& outputs,
+                 Diagnostics& diagnostics) {
+    const std::filesystem::path path =
+        frame.scene.empty() ? std::filesystem::path(options.scene) : frame.scene;
+    if (path.empty()) throw UsageError("no scene given; expected a file .nff or .obj, see --help");
+    spare(outputs, path, "scene");
     std::optional<std::filesystem::path> view;
     if (!options.view.empty()) view = options.view;
-    const Scene scene = load_scene(options.scene, view, diagnostics);
+    Scene scene = load_scene(path, view, diagnostics);
     for (const std::string& library : scene.libraries) spare(outputs, library, "material library");
+    scene.view = view_of(frame, *scene.view, options.frames);
+    return scene;
+}
+
+CellScene read_and_place(const RenderOptions& options, const OutputSet& outputs) {
+    spare_inputs(options, outputs);
+    Diagnostics diagnostics;
+    const Scene scene = read_frame(options, frame_of(options), outputs, diagnostics);
     for (const std::string& message : diagnostics.messages()) std::cerr << message << '\n';
     const Frame frame = place_frame(scene, options.picture);
     if (!std::isfinite(frame.cell_width) || !(frame.cell_width > 0) || !std::isfinite(frame.depth)) {

@@ -15,6 +15,7 @@
 #include "testbench/common/knot_report.hpp"
 #include "testbench/common/machine_run.hpp"
 #include "testbench/common/new_file.hpp"
+#include "testbench/common/presets.hpp"
 #include "testbench/common/probe_run.hpp"
 #include "testbench/common/recording.hpp"
 #include "testbench/common/report_json.hpp"
@@ -150,11 +151,14 @@ int run(TrafficOptions& options, const OptionTable& table) {
     return whole ? exit_code(result.verdict) : int(exit_interrupted);
 }
 
-/// The arguments of --config followed by those of the command line, which so take precedence.
+/// The arguments of --preset and --config, followed by those of the command line, which so take precedence.
 std::vector<std::string> with_configuration(const std::vector<std::string>& words, const CLI::App& app) {
+    std::vector<std::string> all = preset_arguments(words, app);
     const std::string path = configuration_named(words);
-    if (path.empty()) return {words.begin() + 1, words.end()};
-    std::vector<std::string> all = arguments_from_file(path, app);
+    if (!path.empty()) {
+        const std::vector<std::string> from_file = arguments_from_file(path, app);
+        all.insert(all.end(), from_file.begin(), from_file.end());
+    }
     all.insert(all.end(), words.begin() + 1, words.end());
     return all;
 }
@@ -164,6 +168,7 @@ int run(int argc, char** argv) {
     CLI::App app{"Synthetic ray traffic through the cell array, without a scene: does it lock?"};
     app.name("deadlock_tb");
     OptionTable table(app);
+    add_preset_option(app);
     app.add_option("--config", options.run.config,
                    "options from a file as a run writes it; the command line has precedence")
         ->type_name("FILE");

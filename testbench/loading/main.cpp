@@ -13,6 +13,7 @@
 #include "testbench/common/interruptible.hpp"
 #include "testbench/common/machine_run.hpp"
 #include "testbench/common/new_file.hpp"
+#include "testbench/common/presets.hpp"
 #include "testbench/common/report_json.hpp"
 #include "testbench/common/scene_input.hpp"
 #include "testbench/loading/random_scene.hpp"
@@ -171,21 +172,15 @@ int run(Options& options, const OptionTable& table) {
     return count_of(loading.checks) > 0 ? exit_comparison : exit_code(result.verdict);
 }
 
-/// The arguments of --config followed by those of the command line, which so take precedence. A file that
-/// `raycell render` wrote serves too: options that only rays need are ignored.
+/// The arguments of --preset and --config, followed by those of the command line, which so take precedence. A
+/// file that `raycell render` wrote serves too: options that only rays need are ignored.
 std::vector<std::string> with_configuration(const std::vector<std::string>& words, const CLI::App& app) {
+    std::vector<std::string> all = preset_arguments(words, app);
     const std::string path = configuration_named(words);
-    if (path.empty()) return {words.begin() + 1, words.end()};
-    RenderOptions ignored;
-    CLI::App render;
-    OptionTable table(render);
-    add_scene_options(table, ignored);
-    add_machine_options(table, ignored);
-    add_watch_options(table, ignored);
-    add_recording_options(table, ignored);
-    add_array_options(table, ignored);
-    add_probe_options(table, ignored);
-    std::vector<std::string> all = arguments_from_file(path, app, &render);
+    if (!path.empty()) {
+        const std::vector<std::string> from_file = arguments_from_render_file(path, app);
+        all.insert(all.end(), from_file.begin(), from_file.end());
+    }
     all.insert(all.end(), words.begin() + 1, words.end());
     return all;
 }
@@ -196,6 +191,7 @@ int run(int argc, char** argv) {
     CLI::App app{"The loading pipeline alone: does it load what it should, and what holds it up?"};
     app.name("loading_tb");
     OptionTable table(app);
+    add_preset_option(app);
     app.add_option(
            "--config", options.run.config,
            "options from a file as a run writes it, or raycell render; the command line has precedence")

@@ -8,6 +8,7 @@
 #include "testbench/common/entry.hpp"
 #include "testbench/common/help.hpp"
 #include "testbench/common/options.hpp"
+#include "testbench/common/presets.hpp"
 #include "testbench/common/version.hpp"
 #include "testbench/raycell/commands.hpp"
 
@@ -21,10 +22,13 @@ void parse(CLI::App& program, std::vector<std::string> words) {
     program.parse(words);
 }
 
-/// Puts the arguments of --config before the command line's own, which so take precedence.
+/// Puts the arguments of --preset, then those of --config, before the command line's own: what comes later
+/// takes precedence.
 std::vector<std::string> with_configuration(CLI::App& program, std::vector<std::string> words,
                                             const CLI::App& command) {
+    const std::vector<std::string> preset = preset_arguments(words, command);
     const std::string path = configuration_named(words);
+    words.insert(words.begin() + 1, preset.begin(), preset.end());
     if (path.empty()) return words;
     const auto from_file = arguments_from_file(path, command, program.get_subcommand("render"));
     std::vector<std::string> alone = {words.front()};
@@ -34,7 +38,8 @@ std::vector<std::string> with_configuration(CLI::App& program, std::vector<std::
     } catch (const CLI::ParseError& error) {
         throw UsageError(path + ": " + error.what());
     }
-    words.insert(words.begin() + 1, from_file.begin(), from_file.end());
+    const auto behind = words.begin() + 1 + std::ptrdiff_t(preset.size());
+    words.insert(behind, from_file.begin(), from_file.end());
     return words;
 }
 

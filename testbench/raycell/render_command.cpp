@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
+#include <thread>
 
 #include "cells/clock/wall_time.hpp"
 #include "cells/meters/observer_list.hpp"
@@ -24,6 +25,7 @@
 #include "testbench/common/machine_run.hpp"
 #include "testbench/common/new_file.hpp"
 #include "testbench/common/picture_file.hpp"
+#include "testbench/common/presets.hpp"
 #include "testbench/common/probe_run.hpp"
 #include "testbench/common/ray_watch.hpp"
 #include "testbench/common/recording.hpp"
@@ -31,6 +33,7 @@
 #include "testbench/common/scene_input.hpp"
 #include "testbench/common/time_estimate.hpp"
 #include "testbench/raycell/commands.hpp"
+#include "testbench/raycell/frames_run.hpp"
 #include "testbench/raycell/golden_run.hpp"
 #include "testbench/raycell/rank_run.hpp"
 
@@ -334,13 +337,15 @@ void summarise(const RenderOptions& options, const Json& json, bool whole) {
     tell_page(options.prefix);
 }
 
-int run(const RenderOptions& options, const OptionTable& table) {
+int run(const RenderOptions& options, const OptionTable& table, int jobs) {
     check_granularity(options);
     check_wires(options);
     watch_of(options, std::cout);  // throws early for what can't be watched
     check_probes(options);
     check_recording(options);
     check_golden(options);
+    if (!options.frames.empty() && options.frame == 0)
+        return run_frames(options, table, suffixes_of(options), jobs);
     check_ranks(options);
     check_arrays(options);
     const auto start = WallClock::now();
@@ -395,12 +400,17 @@ Command add_render_command(CLI::App& program) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* app = program.add_subcommand("render", "Renders a scene with the simulated machine");
     auto table = std::make_shared<OptionTable>(*app);
+    add_preset_option(*app);
     app->add_option("--config", options->config,
                     "options from a file as a run writes it; the command line has precedence")
         ->type_name("FILE");
     add_render_options(*table, *options);
     add_rank_options(*app, *options);
-    return {app, [options, table] { return run(*options, *table); }};
+    auto jobs = std::make_shared<int>(int(std::max(1U, std::thread::hardware_concurrency())));
+    app->add_option("-j,--jobs", *jobs, "frames of --frames at a time")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    return {app, [options, table, jobs] { return run(*options, *table, *jobs); }};
 }
 
 }  // namespace raycell

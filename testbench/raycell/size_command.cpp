@@ -10,6 +10,7 @@
 #include "testbench/common/configuration.hpp"
 #include "testbench/common/machine_run.hpp"
 #include "testbench/common/new_file.hpp"
+#include "testbench/common/presets.hpp"
 #include "testbench/common/report_json.hpp"
 #include "testbench/common/scene_input.hpp"
 #include "testbench/raycell/commands.hpp"
@@ -277,6 +278,7 @@ Command add_size_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand(
         "size", "Finds the smallest machine for an accuracy; exit code 2 if there is none");
     auto table = std::make_shared<OptionTable>(*app);
+    add_preset_option(*app);
     app->add_option("--config", options->config,
                     "options from a file that size or render wrote; the command line has precedence")
         ->type_name("FILE");

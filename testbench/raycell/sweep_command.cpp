@@ -11,6 +11,7 @@
 #include "testbench/common/configuration.hpp"
 #include "testbench/common/machine_run.hpp"
 #include "testbench/common/new_file.hpp"
+#include "testbench/common/presets.hpp"
 #include "testbench/common/scene_input.hpp"
 #include "testbench/common/signals.hpp"
 #include "testbench/common/traffic_options.hpp"
@@ -40,9 +41,11 @@ struct SweptProgram {
         app.name(synthetic ? "deadlock_tb" : "raycell render");
         if (synthetic) {
             add_traffic_options(table, traffic);
+            add_preset_option(app);
             path = program_beside("deadlock_tb");
         } else {
             add_render_options(table, render);
+            add_preset_option(app);
             path = program_beside("raycell");
         }
     }
@@ -136,10 +139,14 @@ int run(SweepOptions options, std::vector<std::string> words) {
     if (options.seeds > 0) words.push_back("--seed=1.." + std::to_string(options.seeds));
     SweptProgram program(options.synthetic);
     const SweepDesign design = read_sweep(words, program.app);
-    const bool scene = std::any_of(design.axes.begin(), design.axes.end(),
-                                   [](const SweepAxis& axis) { return axis.option == "scene"; });
-    if (!options.synthetic && !scene)
+    const auto has = [&](const std::string& option) {
+        return std::any_of(design.axes.begin(), design.axes.end(),
+                           [&](const SweepAxis& axis) { return axis.option == option; });
+    };
+    if (!options.synthetic && !has("scene") && !has("frames"))
         throw UsageError("sweep: no scene given; expected one or several, or --synthetic");
+    if (has("frames") && !has("frame"))
+        throw UsageError("sweep: --frames: a run is of one frame; expected --frame K, or --frame 1..N");
     const std::string folder = options.prefix + ".runs";
     const std::vector<SweepRun> runs = runs_of(design, options, program.path, folder);
     if (options.dry_run) {

@@ -7,6 +7,7 @@
 #include "testbench/common/configuration.hpp"
 #include "testbench/common/new_file.hpp"
 #include "testbench/common/picture_file.hpp"
+#include "testbench/common/presets.hpp"
 #include "testbench/common/report_json.hpp"
 #include "testbench/common/scene_input.hpp"
 #include "testbench/raycell/commands.hpp"
@@ -72,6 +73,7 @@ Command add_truth_command(CLI::App& program) {
     auto options = std::make_shared<TruthOptions>();
     CLI::App* app = program.add_subcommand("truth", "Renders a scene exactly, without the machine");
     auto table = std::make_shared<OptionTable>(*app);
+    add_preset_option(*app);
     app->add_option("--config", options->config,
                     "options from a file that truth or render wrote; the command line has precedence")
         ->type_name("FILE");

@@ -12,6 +12,7 @@
 #include "model/numbers/hash.hpp"
 #include "testbench/common/nearest_option.hpp"
 #include "testbench/common/options.hpp"
+#include "testbench/common/presets.hpp"
 
 namespace raycell {
 namespace {
@@ -92,8 +93,11 @@ class Reader {
                                  " runs; expected fewer values");
         }
         for (const SweepAxis& axis : design_.axes) {
-            if (axis.option != "scene" && axis.option != "view") continue;
-            for (const std::string& path : axis.values) design_.digests[path] = digest_of(path);
+            const bool preset = axis.option == "preset";
+            if (axis.option != "scene" && axis.option != "view" && axis.option != "frames" && !preset)
+                continue;
+            for (const std::string& name : axis.values)
+                design_.digests[name] = digest_of(preset ? preset_file(name) : name);
         }
         return std::move(design_);
     }

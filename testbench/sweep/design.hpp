@@ -24,7 +24,7 @@ struct SweepDesign {
     std::vector<SweepAxis> axes;  ///< in the order in which they were given
     /// Of every run: options that may come several times in one ("--cost=walk_step=4").
     std::vector<std::string> fixed;
-    std::map<std::string, std::string> digests;  ///< of the scenes' and view files' contents, by path
+    std::map<std::string, std::string> digests;  ///< of the contents of scenes, views and presets
 
     /// Indices of the axes of several values, in their order.
     std::vector<std::size_t> varying() const;
@@ -33,7 +33,7 @@ struct SweepDesign {
     /// A run's options as words of a command line.
     std::vector<std::string> words(const SweepPoint& point) const;
     /// A file name that tells the runs of a sweep apart. It changes with any option, with the contents of
-    /// scenes and view files, and with `program`, a text that tells programs apart.
+    /// scenes, view files and presets, and with `program`, a text that tells programs apart.
     std::string name(const SweepPoint& point, const std::string& program) const;
 };
 

@@ -23,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string messages_of(const SweepRun& run) { return run.prefix + ".messages"; }
-
 pid_t start(const SweepRun& run) {
     std::vector<char*> words;
     for (const std::string& word : run.command) words.push_back(const_cast<char*>(word.c_str()));
@@ -45,7 +43,8 @@ pid_t start(const SweepRun& run) {
 
 /// Removes a run's files: of a whole run all but the results, unless `keep`; of another all.
 void tidy(const SweepRun& run, bool whole, bool keep) {
-    fs::remove(messages_of(run));
+    const std::string messages = messages_of(run);
+    if (!(whole && keep) || fs::file_size(messages) == 0) fs::remove(messages);
     if (whole && keep) return;
     const fs::path prefix(run.prefix);
     const std::string name = prefix.filename().string() + ".";
@@ -62,8 +61,10 @@ std::string failure_of(const SweepRun& run) {
     std::ifstream file(messages_of(run));
     std::ostringstream text;
     text << file.rdbuf();
-    std::string words;
-    for (const std::string& word : run.command) words += (words.empty() ? "" : " ") + word;
+    std::string words = run.title;
+    if (words.empty()) {
+        for (const std::string& word : run.command) words += (words.empty() ? "" : " ") + word;
+    }
     return "a run ended without results: " + words + "\n" + text.str();
 }
 
@@ -108,6 +109,8 @@ class Children {
 };
 
 }  // namespace
+
+std::string messages_of(const SweepRun& run) { return run.prefix + ".messages"; }
 
 bool SweepRun::done() const { return fs::exists(prefix + ".json") && fs::exists(prefix + ".toml"); }
 

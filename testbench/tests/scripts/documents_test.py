@@ -119,6 +119,8 @@ def missing_words(root, build):
                     yield f"option {option} of {' '.join(command)}"
         runs = [("raycell", "render", root / "scenes/cornell.nff", "--cells", "16x16", "--truth", "--ray-store", "2",
                  "--film", "8", "--rays"),
+                ("raycell", "render", root / "scenes/cornell.nff", "--cells", "8x8", "--truth", "--frames",
+                 root / "scenes/cornell_walk.frames"),
                 ("raycell", "render", root / "scenes/facing_mirrors.nff", "--cells", "32x32", "--networks", "split"),
                 ("deadlock_tb", "--networks", "shared"), ("loading_tb", root / "scenes/cornell.nff", "--cells", "16x16")]
         for program, *rest in runs:
