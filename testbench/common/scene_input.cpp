@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "model/truth/fineness.hpp"
 #include "scenes/load_scene.hpp"
 
 namespace raycell {
@@ -18,6 +19,18 @@ void spare(const OutputSet& outputs, const std::string& input, const char* what)
             throw UsageError(path + ": it would be overwritten, but is the run's " + what +
                              "; expected another name for what is written");
     }
+}
+
+/// Chord errors for --tessellate-for; none without it.
+std::vector<double> chosen_chord_errors(const RenderOptions& options, const Scene& scene,
+                                        const Frame& frame) {
+    if (!(options.picture.tessellate_for > 0)) return {};
+    Fineness fineness = fineness_for(scene, frame, options.picture);
+    if (!fineness.reached) {
+        std::cerr << scene.name << ": warning: the finest polygons are " << fineness.psnr_db
+                  << " dB from the scene, not " << options.picture.tessellate_for << " (--tessellate-for)\n";
+    }
+    return std::move(fineness.chord_errors);
 }
 
 }  // namespace
@@ -44,7 +57,7 @@ CellScene read_and_place(const RenderOptions& options, const OutputSet& outputs)
         throw InputError(scene.name, 0, "the view and the scene's extent give no cube of finite size",
                          "a scene whose extent is within reach of the viewer's distance");
     }
-    CellScene placed = place_scene(scene, frame, options.picture);
+    CellScene placed = place_scene(scene, frame, options.picture, chosen_chord_errors(options, scene, frame));
     for (const std::string& warning : placed.warnings)
         std::cerr << scene.name << ": warning: " << warning << '\n';
     return placed;

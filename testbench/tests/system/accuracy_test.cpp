@@ -110,7 +110,7 @@ TEST(TruthOfTheScene, IsThatOfItsPolygonsUnlessAnythingIsCurved) {
     EXPECT_GT(psnr(close.at("accuracy").at("tessellation")), polygons + 5);
 }
 
-TEST(TruthOfTheScene, IsAskedForByName) {
+TEST(TruthOfTheScene, IsTheDefaultAndThatOfThePolygonsIsAskedForByName) {
     const Workshop workshop;
     const auto picture = [&](const std::string& scene, const Words& more) {
         const Words words =
@@ -119,18 +119,32 @@ TEST(TruthOfTheScene, IsAskedForByName) {
         return image_hash(read_exr(workshop.result("t.exr").string()));
     };
     EXPECT_EQ(picture("cornell.nff", {"--truth-of", "scene"}), picture("cornell.nff", {}));
-    EXPECT_NE(picture("still_life.nff", {"--truth-of", "scene"}), picture("still_life.nff", {}));
-    EXPECT_EQ(picture("still_life.nff", {"--truth-of", "polygons"}), picture("still_life.nff", {}));
-    EXPECT_NE(picture("still_life.nff", {"--truth-of", "scene", "--clip"}),
-              picture("still_life.nff", {"--truth-of", "scene"}))
+    EXPECT_EQ(picture("still_life.nff", {"--truth-of", "scene"}), picture("still_life.nff", {}));
+    EXPECT_NE(picture("still_life.nff", {"--truth-of", "polygons"}), picture("still_life.nff", {}));
+    EXPECT_EQ(picture("still_life.nff", {"--chord-error", "0.2"}),
+              picture("still_life.nff", {"--chord-error", "0.1"}))
+        << "no polygon is met";
+    EXPECT_NE(picture("still_life.nff", {"--clip"}), picture("still_life.nff", {}))
         << "curved surfaces are clipped, too";
+}
+
+TEST(TessellateFor, BringsTheWholePictureToTheAccuracyThatIsAskedFor) {
+    const Workshop workshop;
+    const Words words = {"--cells", "64x64", "--engine", "untimed", "--truth"};
+    const Json fixed = workshop.report(own_scene("still_life.nff"), words);
+    const Json finer =
+        workshop.report(own_scene("still_life.nff"), joined(words, {"--tessellate-for", "50"}));
+    ASSERT_FALSE(fixed.is_null() || finer.is_null());
+    EXPECT_GE(psnr(finer.at("accuracy").at("tessellation")), 49.5);
+    EXPECT_GE(psnr(finer.at("accuracy").at("scene")), 48);
+    EXPECT_GT(finer.at("cube").at("polygons"), fixed.at("cube").at("polygons"));
 }
 
 TEST(TruthBeside, IsThePictureThatTruthRendersAlone) {
     const Workshop workshop;
-    const Json report = workshop.report(own_scene("cornell.nff"), {"--cells", "24x32", "--truth"});
+    const Json report = workshop.report(own_scene("still_life.nff"), {"--cells", "24x32", "--truth"});
     ASSERT_EQ(
-        workshop.run({"truth", own_scene("cornell.nff").string(), "--cells", "24x32", "-o", "results/t"})
+        workshop.run({"truth", own_scene("still_life.nff").string(), "--cells", "24x32", "-o", "results/t"})
             .exit_code,
         0);
     const Picture beside = read_exr(workshop.result("a.truth.exr").string());
