@@ -11,25 +11,18 @@
 
 namespace raycell {
 
-double error_weight(const Material& material) {
-    const double mirrored = mirror_share(material);
-    const double transmitted = transmit_share(material);
-    // A mirror among others shows the same fault again in each: the weight grows faster than its own share.
-    return 1 + 10 * std::pow(mirrored, 4) + 2.5 * std::pow(transmitted, 4);
-}
-
 std::vector<double> chord_errors_at(const Scene& scene, const Frame& frame, double level, double least) {
-    // The square error grows with chord error e, radius r and weight w: as e·r·w for a sphere, whose voxels
-    // grow as r/e, and as e·h·w for a cone of height h, whose voxels grow as h·sqrt(r/e). The fewest voxels
-    // for a sum of errors are where one voxel more anywhere lessens it alike.
+    // The square error grows with chord error e and radius r as e·r for a sphere, whose voxels grow as r/e,
+    // and as e·h for a cone of height h, whose voxels grow as h·sqrt(r/e). The fewest voxels for a sum of
+    // errors are where one voxel more lessens it by the same anywhere: equal errors for spheres, smaller ones
+    // for cones.
     std::vector<double> errors;
     errors.reserve(scene.primitives.size());
     for (const Primitive& primitive : scene.primitives) {
-        const double weight = error_weight(scene.materials[primitive.material]);
-        double error = level / std::sqrt(weight);
+        double error = level;
         if (const auto* cone = std::get_if<ConePrimitive>(&primitive.shape)) {
             const double radius = std::max(cone->base_radius, cone->apex_radius) / frame.cell_width;
-            error = std::pow(0.53 * level * level * std::sqrt(radius) / weight, 2.0 / 3);
+            error = std::pow(0.53 * level * level * std::sqrt(radius), 2.0 / 3);
         }
         errors.push_back(std::clamp(error, least, coarsest_chord_error));
     }

@@ -8,12 +8,9 @@
 
 namespace raycell {
 
-/// How much more than a matt one an object of this material adds to the square error of the picture, at the
-/// same chord error; 1 for a matt one. Measured: docs/measured/tessellation.md.
-double error_weight(const Material& material);
-
-/// A chord error for every primitive, cells, that costs few voxels for the accuracy. `level` is that of a
-/// matt sphere; none is below `least` or above `coarsest_chord_error`.
+/// A chord error for every primitive, cells, that costs few voxels for the accuracy
+/// (docs/measured/tessellation.md). `level` is that of spheres; none is below `least` or above
+/// `coarsest_chord_error`.
 std::vector<double> chord_errors_at(const Scene& scene, const Frame& frame, double level, double least);
 
 constexpr double coarsest_chord_error = 0.5;  ///< cells
@@ -25,7 +22,7 @@ double told_chord_error(const Frame& frame, const PictureSettings& settings);
 
 struct Fineness {
     std::vector<double> chord_errors;  ///< of every primitive; empty for a scene without curved ones
-    double level = 0;                  ///< that of a matt sphere, cells
+    double level = 0;                  ///< that of the spheres, cells
     double psnr_db = 200;  ///< of the polygons' truth against the scene's, where they were compared
     bool reached = true;   ///< psnr_db is no more than 0.5 below what was asked for
 };
