@@ -64,7 +64,7 @@ struct PictureSettings {
     /// PSNR of the polygons' truth against the scene's that chooses a chord error per object, dB; 0: all
     /// objects have chord_error.
     double tessellate_for = 0;
-    int voxel_capacity = 0;    ///< voxels a cell can hold; 0: unlimited
+    int voxel_capacity = 0;  ///< voxels a cell can hold; 0: unlimited
     NumberSettings numbers;
 };
 
