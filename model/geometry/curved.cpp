@@ -72,13 +72,14 @@ Box bounds_of(const CurvedSurface& s) {
 }
 
 std::optional<double> meet(const CurvedSurface& s, const dvec3& origin, const dvec3& direction, double t_min,
-                           double t_max, bool leaves, const Box* within) {
+                           double t_max, std::optional<double> left, const Box* within) {
     const bool sphere = s.kind == CurvedSurface::Kind::sphere;
     const Axis axis = sphere ? Axis{} : axis_of(s);
     std::array<double, 2> at =
         sphere ? sphere_roots(s, origin, direction) : cone_roots(s, axis, origin, direction);
-    if (leaves) {
-        const std::size_t own = std::isnan(at[1]) || std::abs(at[0]) < std::abs(at[1]) ? 0 : 1;
+    if (left) {
+        const std::size_t own =
+            std::isnan(at[1]) || std::abs(at[0] - *left) < std::abs(at[1] - *left) ? 0 : 1;
         at[own] = std::numeric_limits<double>::quiet_NaN();
     }
     for (const double t : at) {

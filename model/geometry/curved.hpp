@@ -27,10 +27,11 @@ struct CurvedSurface {
 Box bounds_of(const CurvedSurface& surface);
 
 /// Distance at which a ray meets the surface: the nearest with t_min < t <= t_max, and inside `within` if
-/// that is given; either side counts. `leaves`: the ray starts on the surface, so the nearer root, which is
-/// its own origin, does not count. `direction` is unit, to some 1e-5.
+/// that is given; either side counts. `left`: the distance at which the ray left this surface, if it did; the
+/// root nearest to it is where it started and does not count. `direction` is unit, to some 1e-5.
 std::optional<double> meet(const CurvedSurface& surface, const dvec3& origin, const dvec3& direction,
-                           double t_min, double t_max, bool leaves, const Box* within = nullptr);
+                           double t_min, double t_max, std::optional<double> left,
+                           const Box* within = nullptr);
 
 /// Unit normal at a point of the surface.
 dvec3 normal_at(const CurvedSurface& surface, const dvec3& point);

@@ -26,7 +26,7 @@ namespace {
 
 /// Margin between the visible scene and the cube's front and back, in cells. A surface that faces the viewer
 /// must not lie on a face of the cube, where words can't tell inside from outside. The margin also covers the
-/// distance by which facets lie inside a curved surface.
+/// distance by which facets lie inside or outside of a curved surface.
 double margin_of(const PictureSettings& settings) { return std::max(0.5, 2 * settings.chord_error); }
 
 /// The array's field of view, in the viewer's coordinates. `tan_x` and `tan_y` are half of its sides at
@@ -125,7 +125,8 @@ std::optional<CurvedSurface> curved_surface(const Primitive& primitive, const Fr
 
 }  // namespace
 
-CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings) {
+CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings,
+                      const std::vector<double>& chord_errors) {
     if (scene.sources.size() > max_sources) {
         throw std::invalid_argument("the scene has " + std::to_string(scene.sources.size()) +
                                     " light sources; at most " + std::to_string(max_sources) +
@@ -141,7 +142,9 @@ CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSetti
     }
     for (const Primitive& primitive : scene.primitives) {
         const auto first = std::uint32_t(placed.polygons.size());
-        auto polygons = tessellate(primitive, first, frame, settings.chord_error, &placed.warnings);
+        const auto number = std::size_t(&primitive - scene.primitives.data());
+        const double chord_error = chord_errors.empty() ? settings.chord_error : chord_errors.at(number);
+        auto polygons = tessellate(primitive, first, frame, chord_error, &placed.warnings);
         if (auto surface = curved_surface(primitive, frame); surface && !polygons.empty()) {
             surface->first_polygon = first;
             surface->polygons = std::uint32_t(polygons.size());
@@ -159,6 +162,13 @@ CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSetti
                 if (p[axis] < cube.low[axis] - hair) placed.beyond[std::size_t(2 * axis)] = true;
                 if (p[axis] > cube.high[axis] + hair) placed.beyond[std::size_t(2 * axis + 1)] = true;
             }
+        }
+    }
+    for (const CurvedSurface& surface : placed.curved) {
+        const Box box = bounds_of(surface);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (box.low[int(axis)] < cube.low[int(axis)] - hair) placed.beyond[2 * axis] = true;
+            if (box.high[int(axis)] > cube.high[int(axis)] + hair) placed.beyond[2 * axis + 1] = true;
         }
     }
     if (!any_inside && !placed.polygons.empty()) {

@@ -66,14 +66,16 @@ struct CellScene {
     std::vector<CurvedSurface> curved;  ///< spheres and cones, which have polygons, too
     std::optional<Box> within;          ///< of a clipped scene: curved surfaces count inside it alone
     std::vector<std::string> warnings;  ///< what is not treated as written, for standard error
-    std::array<bool, 6> beyond{};       ///< per Face: whether any polygon reaches beyond its plane
+    std::array<bool, 6> beyond{};       ///< per Face: whether anything reaches beyond its plane
 };
 
 /// Sets up the frame for a scene: the screen stands where the visible scene begins, the back of the cube
 /// where it ends. Throws std::invalid_argument if the scene has no view.
 Frame place_frame(const Scene& scene, const PictureSettings& settings);
 
-/// Tessellates the whole scene into a frame. Throws std::invalid_argument for more than max_sources sources.
-CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings);
+/// Tessellates the whole scene into a frame. `chord_errors`, in cells, has one for every primitive, or is
+/// empty: all have that of the settings. Throws std::invalid_argument for more than max_sources sources.
+CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings,
+                      const std::vector<double>& chord_errors = {});
 
 }  // namespace raycell

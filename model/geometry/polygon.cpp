@@ -92,12 +92,12 @@ Polygon make_polygon(std::uint32_t id, std::uint32_t object, std::vector<dvec3> 
     return polygon;
 }
 
-Polygon make_triangle(std::uint32_t id, std::uint32_t object, const std::array<dvec3, 3>& vertices,
-                      const std::array<dvec3, 3>& normals) {
-    Polygon polygon = make_polygon(id, object, {vertices.begin(), vertices.end()});
-    const dvec2 p0 = project(vertices[0], polygon.drop);
-    const dvec2 e1 = project(vertices[1], polygon.drop) - p0;
-    const dvec2 e2 = project(vertices[2], polygon.drop) - p0;
+Polygon make_smooth_polygon(std::uint32_t id, std::uint32_t object, std::vector<dvec3> vertices,
+                            const std::array<dvec3, 3>& normals) {
+    Polygon polygon = make_polygon(id, object, std::move(vertices));
+    const dvec2 p0 = project(polygon.vertices[0], polygon.drop);
+    const dvec2 e1 = project(polygon.vertices[1], polygon.drop) - p0;
+    const dvec2 e2 = project(polygon.vertices[2], polygon.drop) - p0;
     const dvec3 n1 = normals[1] - normals[0];
     const dvec3 n2 = normals[2] - normals[0];
     const double determinant = e1.x * e2.y - e1.y * e2.x;  // not 0: the projection keeps most of the area
@@ -105,6 +105,11 @@ Polygon make_triangle(std::uint32_t id, std::uint32_t object, const std::array<d
     polygon.normal.dv = (n2 * e1.x - n1 * e2.x) / determinant;
     polygon.normal.base = normals[0] - p0.x * polygon.normal.du - p0.y * polygon.normal.dv;
     return polygon;
+}
+
+Polygon make_triangle(std::uint32_t id, std::uint32_t object, const std::array<dvec3, 3>& vertices,
+                      const std::array<dvec3, 3>& normals) {
+    return make_smooth_polygon(id, object, {vertices.begin(), vertices.end()}, normals);
 }
 
 namespace {

@@ -88,6 +88,11 @@ dvec3 newell(const std::vector<dvec3>& vertices);
 /// Throws std::invalid_argument if the outline has no area.
 Polygon make_polygon(std::uint32_t id, std::uint32_t object, std::vector<dvec3> vertices);
 
+/// Makes a polygon whose field of normals, linear over its plane, has these values at its first three
+/// vertices; they are not on one line.
+Polygon make_smooth_polygon(std::uint32_t id, std::uint32_t object, std::vector<dvec3> vertices,
+                            const std::array<dvec3, 3>& normals);
+
 /// Makes a triangle whose normals are interpolated linearly between those of its vertices.
 Polygon make_triangle(std::uint32_t id, std::uint32_t object, const std::array<dvec3, 3>& vertices,
                       const std::array<dvec3, 3>& normals);

@@ -5,16 +5,34 @@
 
 namespace raycell {
 
+namespace {
+
+/// No facet of a subdivided octahedron whose corners lie at distance 1 has its plane nearer to the centre
+/// than 1 / sqrt(1 + spread/n²).
+constexpr double spread_of(int n) { return n <= 2 ? 2 : 1.77; }
+
+/// The corners' distance from a centre or axis, for a radius of 1, that puts the nearest points of the facets
+/// as far inside as the corners are outside. `nearest`: their distance if the corners are at 1.
+double corners_at(double nearest) { return 2 / (1 + nearest); }
+
+/// The nearest points' distance over that of the corners, with half of the chord error on either side.
+double least_ratio(double radius, double chord_error) {
+    return (radius - 0.5 * chord_error) / (radius + 0.5 * chord_error);
+}
+
+}  // namespace
+
 int sphere_subdivision(double radius, double chord_error) {
-    // The facet at an octant's centre is the largest: its plane lies at r / sqrt(1 + 2/n²).
-    const double ratio = 1 - chord_error / radius;
-    if (!(ratio > 0.58)) return 1;
-    const double n = std::sqrt(2 / (1 / (ratio * ratio) - 1));
-    return int(std::clamp(std::ceil(n), 1.0, double(max_sphere_subdivision)));
+    const double ratio = least_ratio(radius, chord_error);
+    if (!(ratio > 0.577)) return 1;
+    const double steepness = 1 / (ratio * ratio) - 1;
+    if (spread_of(2) <= 4 * steepness) return 2;
+    const double n = std::sqrt(spread_of(3) / steepness);
+    return int(std::clamp(std::ceil(n), 3.0, double(max_sphere_subdivision)));
 }
 
 int cone_facets(double radius, double chord_error) {
-    const double ratio = 1 - chord_error / radius;
+    const double ratio = least_ratio(radius, chord_error);
     if (!(ratio > 0.5)) return 4;
     const double n = std::acos(-1.0) / std::acos(ratio);
     return int(std::clamp(std::ceil(n), 4.0, double(max_cone_facets)));
@@ -52,15 +70,20 @@ class Builder {
             warnings->push_back("a sphere of radius " + std::to_string(radius) + " cells is cut into " +
                                 std::to_string(8 * n * n) + " polygons, the limit, not finer");
         }
+        const double reach = radius * corners_at(1 / std::sqrt(1 + spread_of(n) / (n * n)));
+        // Equal angles along an octant's edges; in its middle facets are larger by half at most.
+        const auto step = [&](int i) { return std::sin(0.5 * std::acos(-1.0) * i / n); };
         for (int octant = 0; octant < 8; ++octant) {
             const dvec3 sign{octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1};
             const bool mirrored = sign.x * sign.y * sign.z < 0;
             // A vertex depends on three whole numbers alone, so octants share their vertices bit for bit.
-            const auto normal = [&](int i, int j) { return glm::normalize(dvec3(i, j, n - i - j)) * sign; };
+            const auto normal = [&](int i, int j) {
+                return glm::normalize(dvec3(step(i), step(j), step(n - i - j))) * sign;
+            };
             const auto facet = [&](dvec3 a, dvec3 b, dvec3 c) {
                 if (mirrored != shape.inward) std::swap(b, c);
                 const double side = shape.inward ? -1 : 1;
-                triangle({centre + radius * a, centre + radius * b, centre + radius * c},
+                triangle({centre + reach * a, centre + reach * b, centre + reach * c},
                          {side * a, side * b, side * c});
             };
             for (int i = 0; i < n; ++i) {
@@ -83,35 +106,46 @@ class Builder {
         const dvec3 helper = std::abs(axis.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
         const dvec3 u = glm::normalize(glm::cross(axis, helper));
         const dvec3 v = glm::cross(axis, u);
-        const int n = cone_facets(std::max(r0, r1), chord_error);
+        const double largest = std::max(r0, r1);
+        const int n = cone_facets(largest, chord_error);
         if (n == max_cone_facets && warnings) {
-            warnings->push_back("a cone of radius " + std::to_string(std::max(r0, r1)) +
-                                " cells is cut into " + std::to_string(n) + " facets, the limit, not finer");
+            warnings->push_back("a cone of radius " + std::to_string(largest) + " cells is cut into " +
+                                std::to_string(n) + " facets, the limit, not finer");
         }
         const double side = shape.inward ? -1 : 1;
         const auto radial = [&](int k) {
             const double angle = 2 * std::acos(-1.0) * (k % n) / n;
             return std::cos(angle) * u + std::sin(angle) * v;
         };
-        const auto facet = [&](dvec3 a, dvec3 b, dvec3 c, dvec3 na, dvec3 nb, dvec3 nc) {
-            if (shape.inward) {
-                std::swap(b, c);
-                std::swap(nb, nc);
-            }
-            triangle({a, b, c}, {side * na, side * nb, side * nc});
-        };
+        // With the radius as weight, the normals of a facet's corners interpolate to the cone's direction of
+        // normal at every point, however the facet narrows; at a tip they vanish.
+        const double outwards = corners_at(std::cos(std::acos(-1.0) / n));
+        const double base_weight = r0 / largest;
+        const double apex_weight = r1 / largest;
         for (int k = 0; k < n; ++k) {
             const dvec3 e0 = radial(k);
             const dvec3 e1 = radial(k + 1);
             const dvec3 n0 = glm::normalize(height * e0 + (r0 - r1) * axis);
             const dvec3 n1 = glm::normalize(height * e1 + (r0 - r1) * axis);
-            const dvec3 middle = glm::normalize(n0 + n1);
-            const dvec3 b0 = base + r0 * e0;
-            const dvec3 b1 = base + r0 * e1;
-            const dvec3 a0 = apex + r1 * e0;
-            const dvec3 a1 = apex + r1 * e1;
-            if (r0 > 0) facet(b0, b1, a1, n0, n1, r1 > 0 ? n1 : middle);
-            if (r1 > 0) facet(b0, a1, a0, r0 > 0 ? n0 : middle, n1, n0);
+            std::vector<dvec3> corners;
+            std::vector<dvec3> normals;
+            const auto corner = [&](const dvec3& end, double weight, const dvec3& e, const dvec3& normal) {
+                corners.push_back(end + outwards * largest * weight * e);
+                normals.push_back(side * weight * normal);
+            };
+            corner(base, base_weight, e0, n0);
+            if (r0 > 0) corner(base, base_weight, e1, n1);
+            corner(apex, apex_weight, e1, n1);
+            if (r1 > 0) corner(apex, apex_weight, e0, n0);
+            if (shape.inward) {
+                std::reverse(corners.begin(), corners.end());
+                std::reverse(normals.begin(), normals.end());
+            }
+            if (corners.size() == 4 && (r1 > r0) != shape.inward) {  // the wide end tells the gradients well
+                std::rotate(corners.begin(), corners.begin() + 2, corners.end());
+                std::rotate(normals.begin(), normals.begin() + 2, normals.end());
+            }
+            facet(corners, {normals[0], normals[1], normals[2]});
         }
     }
 
@@ -126,8 +160,12 @@ class Builder {
     }
 
     void triangle(const std::array<dvec3, 3>& corners, const std::array<dvec3, 3>& normals) {
-        if (!has_area({corners.begin(), corners.end()})) return;  // no area in double precision
-        polygons.push_back(make_triangle(next_id_++, object_, corners, normals));
+        facet({corners.begin(), corners.end()}, normals);
+    }
+
+    void facet(const std::vector<dvec3>& corners, const std::array<dvec3, 3>& normals) {
+        if (!has_area(corners)) return;  // no area in double precision
+        polygons.push_back(make_smooth_polygon(next_id_++, object_, corners, normals));
     }
 
     const Frame& frame_;

@@ -59,8 +59,12 @@ struct PictureSettings {
     /// Offset of a new ray's origin along the polygon's normal, to the side that the ray goes to, in cells;
     /// negative: as the arithmetic needs it.
     double normal_offset = -1;
-    double chord_error = 0.1;  ///< cells, largest gap between a curved object and its polygons
-    int voxel_capacity = 0;    ///< voxels a cell can hold; 0: unlimited
+    /// Cells; the polygons of a curved object lie within half of it on either side of the surface.
+    double chord_error = 0.1;
+    /// PSNR of the polygons' truth against the scene's that chooses a chord error per object, dB; 0: all
+    /// objects have chord_error.
+    double tessellate_for = 0;
+    int voxel_capacity = 0;  ///< voxels a cell can hold; 0: unlimited
     NumberSettings numbers;
 };
 

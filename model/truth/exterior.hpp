@@ -10,12 +10,14 @@ namespace raycell {
 class ClassicalExterior : public ExteriorTracer {
   public:
     /// The renderer must have been made from this scene, with the settings of the machine's ray tree; both
-    /// must outlive this object. Throws std::invalid_argument for one that does not render polygons.
+    /// must outlive this object. It meets spheres and cones as such, unless it renders polygons.
     ClassicalExterior(const CellScene& scene, const TruthRenderer& truth);
     dvec3 radiance(const ExteriorRequest& request, const Ray& ray, Pixel* pixel) const override;
     bool blocked(const ExteriorRequest& request, const Ray& ray) const override;
 
   private:
+    double started(const ExteriorRequest& request, const Ray& ray) const;
+
     const CellScene& scene_;
     const TruthRenderer& truth_;
 };

@@ -209,14 +209,12 @@ void Sampler::follow(const Start& ray, int generation, double weight) {
 }
 
 void Sampler::shade(const TruthHit& hit, const dvec3& direction, int generation, double weight) {
-    const Polygon& polygon = scene_.polygons[hit.index];
-    const Material& material = scene_.objects[polygon.object];
-    const ShadePoint point = shade_point(
-        hit.position, direction, polygon.normal.at(project(hit.position, polygon.drop)), polygon.plane.n);
+    const Material& material = scene_.objects[truth_.object_of(hit)];
+    const ShadePoint point = truth_.point_at(hit, direction);
     if (settings_.shadows != Shadows::precast) {
         for (const Source& source : scene_.sources) {
             const SourceView view = view_source(point, source);
-            if (view.faces()) shadow({point.position, view.direction, polygon.id}, view.distance, false);
+            if (view.faces()) shadow({point.position, view.direction, hit.polygon}, view.distance, false);
         }
     }
     const auto sends = [&](double share) {
@@ -224,10 +222,10 @@ void Sampler::shade(const TruthHit& hit, const dvec3& direction, int generation,
     };
     const double mirrored = mirror_share(material);
     if (sends(mirrored))
-        follow({point.position, reflect_direction(point), polygon.id}, generation + 1, weight * mirrored);
+        follow({point.position, reflect_direction(point), hit.polygon}, generation + 1, weight * mirrored);
     const double transmitted = transmit_share(material);
     if (sends(transmitted)) {
-        follow({point.position, transmit_direction(point, material.ior), polygon.id}, generation + 1,
+        follow({point.position, transmit_direction(point, material.ior), hit.polygon}, generation + 1,
                weight * transmitted);
     }
 }

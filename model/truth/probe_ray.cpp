@@ -12,9 +12,10 @@ namespace {
 constexpr double grazing = 1e-6;
 }  // namespace
 
-ProbeRay::ProbeRay(const dvec3& origin, const dvec3& direction)
+ProbeRay::ProbeRay(const dvec3& origin, const dvec3& direction, double started)
     : origin_(origin),
       direction_(direction),
+      started_(started),
       along_(dominant_axis(direction)),
       across_(projection(along_)),
       shear_(direction[across_.u] / direction[along_], direction[across_.v] / direction[along_]) {}

@@ -25,8 +25,8 @@ inline double outline_room(const Polygon& polygon) { return exact_hair + 2 * pol
 class ProbeRay {
   public:
     /// Cell coordinates; `direction` is unit (an error of a few 1e-5, as fixed-point words have, does no
-    /// harm).
-    ProbeRay(const dvec3& origin, const dvec3& direction);
+    /// harm). `started`: the distance at which the ray left its surface, negative if it is a ray's rest.
+    ProbeRay(const dvec3& origin, const dvec3& direction, double started = 0);
 
     /// Distance along the ray, t_min < t <= t_max, at which it meets the polygon; either side counts.
     std::optional<double> meet(const Polygon& polygon, double t_min, double t_max) const;
@@ -34,6 +34,7 @@ class ProbeRay {
     dvec3 at(double t) const { return origin_ + t * direction_; }
     const dvec3& origin() const { return origin_; }
     const dvec3& direction() const { return direction_; }
+    double started() const { return started_; }
 
   private:
     dvec2 flatten(const dvec3& point) const;
@@ -43,6 +44,7 @@ class ProbeRay {
 
     dvec3 origin_;
     dvec3 direction_;
+    double started_;
     int along_;          ///< axis of the direction's largest component
     Projection across_;  ///< the other two
     dvec2 shear_;

@@ -158,7 +158,8 @@ std::optional<double> Surfaces::meet(std::size_t i, const ProbeRay& ray, std::ui
                                      double t_max) const {
     if (const Polygon* p = polygon(i)) return p->id == leaves ? std::nullopt : ray.meet(*p, t_min, t_max);
     const CurvedSurface& surface = curved(i);
-    return raycell::meet(surface, ray.origin(), ray.direction(), t_min, t_max, surface.owns(leaves),
+    return raycell::meet(surface, ray.origin(), ray.direction(), t_min, t_max,
+                         surface.owns(leaves) ? std::optional(ray.started()) : std::nullopt,
                          scene_.within ? &*scene_.within : nullptr);
 }
 

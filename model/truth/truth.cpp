@@ -31,23 +31,57 @@ struct TruthRenderer::Tracer {
         double weight;
     };
 
-    dvec3 trace(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, Rank rank);
+    dvec3 trace(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, Rank rank,
+                double started = 0);
     dvec3 shade(const ShadePoint& point, const TruthHit& hit, Rank rank);
     std::uint64_t lit_sources(const ShadePoint& point, std::uint32_t polygon);
     bool sends(double share, Rank rank) const {
         return share > 0 && rank.generation < limits.max_depth && rank.weight * share >= limits.min_weight;
     }
-    ShadePoint point_at(const TruthHit& hit, const dvec3& direction) const;
+    bool blocked(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, double reach) const;
+    dvec3 leave(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, Rank rank, double t);
     void primary(double x, double y, Pixel& pixel);
 };
 
-ShadePoint TruthRenderer::Tracer::point_at(const TruthHit& hit, const dvec3& direction) const {
-    if (const Polygon* polygon = truth.surfaces_.polygon(hit.index)) {
+ShadePoint TruthRenderer::point_at(const TruthHit& hit, const dvec3& direction) const {
+    if (const Polygon* polygon = surfaces_.polygon(hit.index)) {
         const dvec3 normal = polygon->normal.at(project(hit.position, polygon->drop));
         return shade_point(hit.position, direction, normal, polygon->plane.n);
     }
-    const dvec3 normal = normal_at(truth.surfaces_.curved(hit.index), hit.position);
+    const dvec3 normal = normal_at(surfaces_.curved(hit.index), hit.position);
     return shade_point(hit.position, direction, normal, normal);
+}
+
+namespace {
+
+/// Distance at which a ray from a point of the cube leaves it.
+double way_out(const Box& cube, const dvec3& origin, const dvec3& direction) {
+    double t = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0) continue;
+        const double face = direction[axis] > 0 ? cube.high[axis] : cube.low[axis];
+        t = std::min(t, (face - origin[axis]) / direction[axis]);
+    }
+    return std::max(t, 0.0);
+}
+
+}  // namespace
+
+/// Whether anything hides a source at distance `reach`.
+bool TruthRenderer::Tracer::blocked(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
+                                    double reach) const {
+    const TruthRenderer* const beyond = truth.settings_.beyond;
+    if (!beyond) return truth.occluded(origin, direction, exclude, reach);
+    const double out = way_out(truth.scene_.frame.cube(), origin, direction);
+    if (truth.occluded(origin, direction, exclude, std::min(reach, out + nearest_hit))) return true;
+    return out < reach && beyond->occluded(origin + out * direction, direction, exclude, reach - out, -out);
+}
+
+/// Goes on with a ray from where it leaves the cube.
+dvec3 TruthRenderer::Tracer::leave(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
+                                   Rank rank, double t) {
+    return truth.settings_.beyond->radiance(origin + t * direction, direction, exclude, rank.generation,
+                                            rank.weight, &counts, -t);
 }
 
 /// One bit per source that the normal faces and nothing hides.
@@ -58,8 +92,7 @@ std::uint64_t TruthRenderer::Tracer::lit_sources(const ShadePoint& point, std::u
         const SourceView view = view_source(point, sources[i]);
         if (!view.faces()) continue;
         ++counts.shadow;
-        if (!truth.occluded(point.position, view.direction, polygon, view.distance))
-            lit |= std::uint64_t(1) << i;
+        if (!blocked(point.position, view.direction, polygon, view.distance)) lit |= std::uint64_t(1) << i;
     }
     return lit;
 }
@@ -89,28 +122,43 @@ dvec3 TruthRenderer::Tracer::shade(const ShadePoint& point, const TruthHit& hit,
 }
 
 dvec3 TruthRenderer::Tracer::trace(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
-                                   Rank rank) {
-    const std::optional<TruthHit> hit = truth.intersect(origin, direction, exclude);
+                                   Rank rank, double started) {
+    const double out = truth.settings_.beyond ? way_out(truth.scene_.frame.cube(), origin, direction)
+                                              : std::numeric_limits<double>::infinity();
+    const std::optional<TruthHit> hit = truth.intersect(origin, direction, exclude, out, started);
+    if (!hit && truth.settings_.beyond) return leave(origin, direction, exclude, rank, out);
     if (!hit) return truth.scene_.background;
-    return shade(point_at(*hit, direction), *hit, rank);
+    return shade(truth.point_at(*hit, direction), *hit, rank);
 }
 
 /// Fills a pixel from the primary ray through (x, y) cells.
 void TruthRenderer::Tracer::primary(double x, double y, Pixel& pixel) {
     const Frame::PrimaryRay ray = truth.scene_.frame.primary_ray(x, y);
     ++counts.eye;
-    const std::optional<TruthHit> hit = truth.intersect(ray.origin, ray.direction, no_polygon);
+    const TruthRenderer* met = &truth;
+    std::optional<TruthHit> hit;
+    if (truth.settings_.beyond) {
+        const double out = way_out(truth.scene_.frame.cube(), ray.origin, ray.direction);
+        hit = truth.intersect(ray.origin, ray.direction, no_polygon, out);
+        if (!hit) {
+            met = truth.settings_.beyond;
+            hit = met->intersect(ray.origin + out * ray.direction, ray.direction, no_polygon);
+            pixel.colour = leave(ray.origin, ray.direction, no_polygon, {0, 1.0}, out);
+        }
+    } else {
+        hit = truth.intersect(ray.origin, ray.direction, no_polygon);
+    }
     if (!hit) {
         pixel.colour = truth.scene_.background;
         pixel.depth = std::numeric_limits<double>::infinity();
         return;
     }
     ++counts.eye_hits;
-    const ShadePoint point = point_at(*hit, ray.direction);
+    const ShadePoint point = met->point_at(*hit, ray.direction);
     pixel.depth = hit->position.z;
     pixel.normal = point.normal;
     pixel.polygon = hit->polygon;
-    pixel.colour = shade(point, *hit, {0, 1.0});
+    if (met == &truth) pixel.colour = shade(point, *hit, {0, 1.0});
 }
 
 TruthRenderer::TruthRenderer(const CellScene& scene, const TruthSettings& settings)
@@ -131,22 +179,22 @@ TruthRenderer::TruthRenderer(const CellScene& scene, const TruthSettings& settin
 }
 
 std::optional<TruthHit> TruthRenderer::intersect(const dvec3& origin, const dvec3& direction,
-                                                 std::uint32_t exclude, double t_max) const {
-    const ProbeRay ray(origin, direction);
+                                                 std::uint32_t exclude, double t_max, double started) const {
+    const ProbeRay ray(origin, direction, started);
     const std::optional<SurfaceIndex::Nearest> found = index_.nearest(ray, exclude, t_max);
     if (!found) return std::nullopt;
     return TruthHit{found->t, surfaces_.id(found->index), found->index, ray.at(found->t)};
 }
 
-bool TruthRenderer::occluded(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
-                             double t_max) const {
-    return index_.any(ProbeRay(origin, direction), exclude, t_max - nearest_hit);
+bool TruthRenderer::occluded(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, double t_max,
+                             double started) const {
+    return index_.any(ProbeRay(origin, direction, started), exclude, t_max - nearest_hit);
 }
 
 dvec3 TruthRenderer::radiance(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
-                              int generation, double weight, TruthCounts* counts) const {
+                              int generation, double weight, TruthCounts* counts, double started) const {
     Tracer tracer(*this, settings_);
-    const dvec3 intensity = tracer.trace(origin, direction, exclude, {generation, weight});
+    const dvec3 intensity = tracer.trace(origin, direction, exclude, {generation, weight}, started);
     if (counts) *counts += tracer.counts;
     return intensity;
 }

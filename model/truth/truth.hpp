@@ -1,5 +1,5 @@
-// The truth: the same scene, camera and shading model, rendered classically, on the exact polygons or on
-// spheres and cones as such.
+// The truth: the same scene, camera and shading model, rendered classically, on spheres and cones as such or
+// on the exact polygons.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,19 @@
 
 namespace raycell {
 
-/// Limits of a tree of rays.
+class TruthRenderer;
+
+/// Limits of a tree of rays, and what the rays meet.
 struct TruthSettings {
     int max_depth = 4;              ///< generations after the primary ray, >= 0
     double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut
     /// SPD's rules 8 and 9: a transmitting surface always sends one reflected ray, whatever its Ks, and on
     /// total internal reflection no other.
     bool transmitters_reflect = false;
-    TruthOf of = TruthOf::polygons;
+    TruthOf of = TruthOf::scene;
+    /// Goes on with rays where they leave the cube; null: nobody, the cube is no border. With it, a truth of
+    /// polygons is what a machine of exact arithmetic and this exterior renders.
+    const TruthRenderer* beyond = nullptr;
 };
 
 struct TruthHit {
@@ -60,19 +65,25 @@ class TruthRenderer {
     explicit TruthRenderer(const CellScene& scene, const TruthSettings& settings = {});
     explicit TruthRenderer(const CellScene&&, const TruthSettings& = {}) = delete;
 
-    /// The first polygon with nearest_hit < t <= t_max; of those within exact_tie of the nearest,
-    /// the one with the lowest id.
+    /// The first surface with nearest_hit < t <= t_max; of those within exact_tie of the nearest,
+    /// the one with the lowest id. `started`: where the ray left `exclude`, 0 or negative; here and below.
     std::optional<TruthHit> intersect(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
-                                      double t_max = std::numeric_limits<double>::infinity()) const;
+                                      double t_max = std::numeric_limits<double>::infinity(),
+                                      double started = 0) const;
 
-    /// Whether any polygon, transparent or not, lies between the origin and t_max. Polygons within
+    /// Whether any surface, transparent or not, lies between the origin and t_max. Surfaces within
     /// nearest_hit of either end don't count: a polygon through the source itself does not darken it.
-    bool occluded(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, double t_max) const;
+    bool occluded(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, double t_max,
+                  double started = 0) const;
 
     /// Intensity that a ray brings back. `generation` is 0 for a primary ray; `weight` is the product of the
     /// shares on the way to it. If `counts` is given, adds the rays that this ray causes, not the ray itself.
     dvec3 radiance(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, int generation,
-                   double weight, TruthCounts* counts = nullptr) const;
+                   double weight, TruthCounts* counts = nullptr, double started = 0) const;
+
+    /// A hit as shading sees it, and the object that was hit.
+    ShadePoint point_at(const TruthHit& hit, const dvec3& direction) const;
+    std::uint32_t object_of(const TruthHit& hit) const { return surfaces_.object(hit.index); }
 
     /// What it renders.
     TruthOf of() const { return settings_.of; }

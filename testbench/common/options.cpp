@@ -279,7 +279,11 @@ void add_placement_options(OptionTable& table, RenderOptions& options) {
                  "viewer at the scene's distance, or at infinity (axial primary rays)");
     table.size("cells", p.width, p.height, "size of the array, one cell per pixel");
     table.number("chord-error", p.chord_error, 1e-3, 1e3,
-                 "largest gap between a curved object and its polygons, cells");
+                 "depth of a curved object's facets below their corners, cells; half of it lies outside");
+    table.number(
+        "tessellate-for", p.tessellate_for, 0.0, 100.0,
+        "PSNR of the polygons against the scene, dB, that chooses a chord error for each curved object; "
+        "0: --chord-error for all");
 }
 
 void add_scene_options(OptionTable& table, RenderOptions& options) {

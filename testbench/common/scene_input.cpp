@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "model/truth/fineness.hpp"
 #include "scenes/load_scene.hpp"
 
 namespace raycell {
@@ -35,6 +36,18 @@ FrameLine frame_of(const RenderOptions& options) {
         throw UsageError("--frame " + std::to_string(options.frame) + ": " + options.frames +
                          " has no such frame; " + allowed);
     return frames[std::size_t(options.frame) - 1];
+}
+
+/// Chord errors for --tessellate-for; none without it.
+std::vector<double> chosen_chord_errors(const RenderOptions& options, const Scene& scene,
+                                        const Frame& frame) {
+    if (!(options.picture.tessellate_for > 0)) return {};
+    Fineness fineness = fineness_for(scene, frame, options.picture);
+    if (!fineness.reached) {
+        std::cerr << scene.name << ": warning: the finest polygons are " << fineness.psnr_db
+                  << " dB from the scene, not " << options.picture.tessellate_for << " (--tessellate-for)\n";
+    }
+    return std::move(fineness.chord_errors);
 }
 
 }  // namespace
@@ -72,7 +85,7 @@ CellScene read_and_place(const RenderOptions& options, const OutputSet& outputs)
         throw InputError(scene.name, 0, "the view and the scene's extent give no cube of finite size",
                          "a scene whose extent is within reach of the viewer's distance");
     }
-    CellScene placed = place_scene(scene, frame, options.picture);
+    CellScene placed = place_scene(scene, frame, options.picture, chosen_chord_errors(options, scene, frame));
     for (const std::string& warning : placed.warnings)
         std::cerr << scene.name << ": warning: " << warning << '\n';
     return placed;

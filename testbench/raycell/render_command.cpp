@@ -187,52 +187,51 @@ Json model_report(const Run& run) {
 
 const std::vector<std::string> truth_suffixes = {".truth.exr", ".truth.png", ".difference.png"};
 
-/// How far the picture, and the polygons' truth, are from the scene itself: its spheres and cones as such.
-/// Which polygon is hit first is no question there.
-void add_scene_truth(const CellScene& scene, const TruthSettings& tree, const Picture& picture,
-                     const Picture& polygons, const TruthRenderer::Progress& progress, Json& accuracy) {
-    const bool curved = !scene.curved.empty();
-    const Picture itself =
-        curved ? TruthRenderer(scene, {tree.max_depth, tree.min_weight, false, TruthOf::scene})
-                     .render(0, progress)
-               : Picture();
-    for (const auto& [name, from] : {std::pair("scene", &picture), std::pair("tessellation", &polygons)}) {
-        Json part = report(*from, curved ? itself : polygons);
-        part.erase("wrong_hit_percent");
-        accuracy[name] = std::move(part);
-    }
-}
-
-/// Renders the truth beside the picture and reports how far apart they are. Throws Interrupted.
+/// Renders the scene's truth beside the picture and reports how far apart they are, and of that, how far the
+/// machine is from the truth of its polygons and these are from the scene. Throws Interrupted.
 Json render_truth(const RenderOptions& options, const CellScene& scene, const Picture& picture,
                   OutputSet& outputs) {
     const CellScene clipped = options.clip_truth ? clip_scene(scene) : scene;
     const TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
-    const TruthRenderer truth(clipped, tree);
     const bool progress = shows_progress(options);
     const TruthRenderer::Progress tell = [&](int done, int all) {
         stop_if_interrupted();
         if (progress) std::cerr << "\rtruth: row " << done << " of " << all << std::flush;
     };
-    const Picture exact = truth.render(0, tell);
-    Json accuracy = report(picture, exact);
-    add_scene_truth(clipped, tree, picture, exact, tell, accuracy);
+    const TruthRenderer truth(clipped, tree);
+    const Picture itself = truth.render(0, tell);
+    const bool exterior = options.picture.exterior == ExteriorMode::host && !options.clip_truth;
+    const Picture polygons = clipped.curved.empty()
+                                 ? itself
+                                 : TruthRenderer(clipped, {tree.max_depth, tree.min_weight, false,
+                                                           TruthOf::polygons, exterior ? &truth : nullptr})
+                                       .render(0, tell);
     if (progress) end_progress();
-    outputs.write(truth_suffixes[0], [&](NewFile& file) { write_exr(exact, file); });
-    outputs.write(truth_suffixes[1], [&](NewFile& file) { write_png(exact, file); });
-    outputs.write(truth_suffixes[2], [&](NewFile& file) { write_png(difference(picture, exact), file); });
+    Json accuracy = report(picture, polygons);
+    // Which polygon is hit first is no question against the scene.
+    for (const auto& [name, from] : {std::pair("scene", &picture), std::pair("tessellation", &polygons)}) {
+        Json part = report(*from, itself);
+        part.erase("wrong_hit_percent");
+        accuracy[name] = std::move(part);
+    }
+    outputs.write(truth_suffixes[0], [&](NewFile& file) { write_exr(itself, file); });
+    outputs.write(truth_suffixes[1], [&](NewFile& file) { write_png(itself, file); });
+    outputs.write(truth_suffixes[2], [&](NewFile& file) { write_png(difference(picture, itself), file); });
     return accuracy;
 }
 
-/// Compares a sample of the picture's pixels with the truth; only this shows that words are too short for a
-/// scene. Warns if much is lost and only words can be the reason.
+/// Compares a sample of the picture's pixels with the truth of the polygons; only this shows that words are
+/// too short for a scene. `truth` is the exterior's. Warns if much is lost and only words can be the reason.
 void add_sample(const RenderOptions& options, const RunResult& result, const CellScene& scene,
                 const TruthRenderer* truth, Json& losses) {
     losses["sample"] = {{"pixels", 0}, {"psnr_db", nullptr}};
     const bool finished = result.verdict == Verdict::completed || result.verdict == Verdict::capacity;
     if (!truth || !finished || options.picture.stage == RunStage::load) return;
     constexpr int pixels = 512;
-    const SampledAccuracy sample = sample_accuracy(result.picture, scene.frame, *truth, pixels);
+    const bool exterior = options.picture.exterior == ExteriorMode::host;
+    const TruthRenderer polygons(scene, {options.picture.max_depth, options.picture.min_weight, false,
+                                         TruthOf::polygons, exterior ? truth : nullptr});
+    const SampledAccuracy sample = sample_accuracy(result.picture, scene.frame, polygons, pixels);
     losses["sample"] = {{"pixels", sample.pixels}, {"psnr_db", sample.psnr_db}};
     constexpr double good = 45;  // dB; the default machine gives 60 to 90 on scenes that fit its words
     const PictureSettings& p = options.picture;
@@ -326,8 +325,12 @@ void summarise(const RenderOptions& options, const Json& json, bool whole) {
               << ", precast " << cycles["precast"] << ", trace " << cycles["trace"] << "; "
               << json["voxels"]["stored"] << " voxels\n";
     if (json.contains("accuracy")) {
-        std::cout << "accuracy " << json["accuracy"]["psnr_db"].get<double>() << " dB, other first hit in "
-                  << json["accuracy"]["wrong_hit_percent"].get<double>() << " % of the pixels\n";
+        const Json& accuracy = json["accuracy"];
+        const auto psnr = [](const Json& part) { return part["psnr_db"].get<double>(); };
+        std::cout << "accuracy " << psnr(accuracy["scene"]) << " dB; polygons against the scene "
+                  << psnr(accuracy["tessellation"]) << " dB, machine against the polygons " << psnr(accuracy)
+                  << " dB, other first hit in " << accuracy["wrong_hit_percent"].get<double>()
+                  << " % of the pixels\n";
     }
     std::cout << "picture: " << options.prefix << ".png\n";
     const bool dumped = options.probes.on_deadlock && json["verdict"] == "deadlock" && whole;

@@ -76,12 +76,13 @@ class LoadedCells {
     std::vector<std::int64_t> most_edges_;  ///< by number of voxels in a cell: most edges of such cells
 };
 
-/// Machines of one scene, measured by the untimed engine against one truth.
+/// Machines of one scene, measured by the untimed engine: their colours against the scene's truth, their
+/// first hits against the polygons'.
 class ArrayModel : public SizeModel {
   public:
     ArrayModel(const RenderOptions& options, const CellScene& scene, const ExteriorTracer* exterior,
-               const Picture& truth)
-        : options_(options), scene_(scene), exterior_(exterior), truth_(truth) {}
+               const Picture& truth, const Picture& polygons)
+        : options_(options), scene_(scene), exterior_(exterior), truth_(truth), polygons_(polygons) {}
 
     StorageCounts storage(const SizeSetting& setting) const override {
         const PictureSettings picture = picture_of(options_, setting);
@@ -97,6 +98,7 @@ class ArrayModel : public SizeModel {
         trial.setting = setting;
         const Picture picture = machine.render();
         trial.accuracy = compare(picture, truth_);
+        trial.accuracy.wrong_hit_percent = compare(picture, polygons_).wrong_hit_percent;
         trial.image = image_hash(picture);
         trial.storage = machine.storage();
         return trial;
@@ -139,6 +141,7 @@ class ArrayModel : public SizeModel {
     const CellScene& scene_;
     const ExteriorTracer* exterior_;
     const Picture& truth_;
+    const Picture& polygons_;
     mutable std::mutex mutex_;
     mutable std::map<SizeSetting, LoadedCells> loaded_;
     mutable std::size_t runs_ = 0;
@@ -252,10 +255,15 @@ int run(const SizeOptions& options, const OptionTable& table, const CLI::App& ap
     const CellScene& seen = exterior ? scene : clipped;
     const TruthRenderer truth(seen, tree);
     const Picture exact = truth.render();
+    const Picture polygons = seen.curved.empty()
+                                 ? exact
+                                 : TruthRenderer(seen, {tree.max_depth, tree.min_weight, false,
+                                                        TruthOf::polygons, exterior ? &truth : nullptr})
+                                       .render();
     const ClassicalExterior outside(seen, truth);
     const ExteriorTracer* const tracer = exterior ? &outside : nullptr;
 
-    const ArrayModel model(options, scene, tracer, exact);
+    const ArrayModel model(options, scene, tracer, exact, polygons);
     SizeSearch search(model, options.goal, levels_to_try(options.picture.depth_levels));
     const std::optional<SizeTrial> found = search.find();
     if (shows_progress(options)) end_progress();

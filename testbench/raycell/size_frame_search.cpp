@@ -49,13 +49,13 @@ std::vector<FrameTrial> FrameSearch::run(const std::vector<FramePoint>& points, 
 
 /// Hit tests, normals and shadows that are accurate enough, those with the fewest bits of voxels first.
 std::vector<FrameTrial> FrameSearch::accurate_pictures() {
-    const std::size_t chord = axis("chord-error");
+    const std::size_t chord = axis("tessellate-for");
     std::vector<std::size_t> chords = {start_[chord]};
     if (goal_.accurate()) {
-        model_.step_begins("chord errors");
+        model_.step_begins("polygons of curved objects");
         std::vector<FramePoint> points;
         for (std::size_t i = 0; i < axes_[chord].values.size(); ++i)
-            points.push_back(at(start_, "chord-error", i));
+            points.push_back(at(start_, "tessellate-for", i));
         const std::vector<FrameTrial> trials = run(points, false);
         const auto enough = std::find_if(trials.begin(), trials.end(), [&](const FrameTrial& t) {
             return goal_.accuracy.met_by(t.accuracy);
@@ -70,7 +70,7 @@ std::vector<FrameTrial> FrameSearch::accurate_pictures() {
         for (std::size_t hit = 0; hit < axes_[axis("hit")].values.size(); ++hit) {
             for (std::size_t normals = 0; normals < axes_[axis("normals")].values.size(); ++normals) {
                 for (std::size_t shadows = 0; shadows < axes_[axis("shadows")].values.size(); ++shadows) {
-                    FramePoint point = at(at(start_, "chord-error", c), "hit", hit);
+                    FramePoint point = at(at(start_, "tessellate-for", c), "hit", hit);
                     points.push_back(at(at(point, "normals", normals), "shadows", shadows));
                 }
             }
@@ -133,12 +133,12 @@ bool FrameSearch::lower(FrameTrial& best, std::size_t i) {
 }
 
 FrameTrial FrameSearch::reduced(FrameTrial best) {
-    // Hit test, normals and shadows are given; finer chord errors were tried beside them.
+    // Hit test, normals and shadows are given; finer polygons were tried beside them.
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         const std::string& option = axes_[i].option;
         const bool given =
-            option == "hit" || option == "normals" || option == "shadows" || option == "chord-error";
+            option == "hit" || option == "normals" || option == "shadows" || option == "tessellate-for";
         if (!given) order.push_back(i);
     }
     // What saves most comes first: the ray store, buffers, units.

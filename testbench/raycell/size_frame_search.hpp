@@ -61,16 +61,16 @@ class FrameModel {
     virtual void step_begins(const std::string& /*what*/) const {}
 };
 
-/// Searches from coarse to fine. First pictures by the untimed machine: the chord error with the best of
-/// everything else, then every hit test, normals and shadows at that chord error and the next finer one. Of
-/// those that are accurate enough and could be loaded in time it runs the smallest in the fastest machine;
-/// then it takes away from the smallest of those that are in time, option by option, while the goals are met,
-/// until nothing one step smaller meets them. Every trial is a run; the machine found is the smallest of all
-/// that were run and meet the goals.
+/// Searches from coarse to fine. First pictures by the untimed machine: how fine the polygons of curved
+/// objects must be with the best of everything else, then every hit test, normals and shadows with those and
+/// with the next finer ones. Of those that are accurate enough and could be loaded in time it runs the
+/// smallest in the fastest machine; then it takes away from the smallest of those that are in time, option by
+/// option, while the goals are met, until nothing one step smaller meets them. Every trial is a run; the
+/// machine found is the smallest of all that were run and meet the goals.
 class FrameSearch {
   public:
-    /// Axes by name: chord-error, hit, normals, shadows, word-bits must be among them, with more than their
-    /// options' least values last. `start`: the machine from which pictures are tried.
+    /// Axes by name: tessellate-for, hit, normals, shadows, word-bits must be among them, with more than
+    /// their options' least values last. `start`: the machine from which pictures are tried.
     FrameSearch(const FrameModel& model, const FrameGoal& goal, std::vector<FrameAxis> axes,
                 FramePoint start);
 

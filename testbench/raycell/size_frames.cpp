@@ -22,8 +22,15 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+std::string decimals(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", value);
+    return text;
+}
+
 /// What the search may choose; of each the cheapest first.
-std::vector<FrameAxis> axes_of(const RenderOptions& options, bool curved, int least_store) {
+std::vector<FrameAxis> axes_of(const RenderOptions& options, const FrameGoal& goal, bool curved,
+                               int least_store) {
     std::vector<std::string> stores;
     for (const int slots : {least_store, least_store + 1, 8, 12, 16}) {
         if (stores.empty() || slots > std::stoi(stores.back())) stores.push_back(std::to_string(slots));
@@ -32,8 +39,14 @@ std::vector<FrameAxis> axes_of(const RenderOptions& options, bool curved, int le
     for (int power = 16; power < options.picture.depth_levels; power *= 4)
         levels.push_back(std::to_string(power));
     levels.push_back(std::to_string(options.picture.depth_levels));
-    const std::vector<std::string> chords = {"0.4", "0.2", "0.1", "0.05", "0.02", "0.01", "0.005", "0.002"};
-    return {{"chord-error", curved ? chords : std::vector<std::string>{"0.1"}, true},
+    // The whole error is that of the polygons and the machine's own.
+    std::vector<std::string> polygons = {"0"};
+    if (curved && goal.accuracy.psnr_db > 0) {
+        polygons.clear();
+        for (const double more : {0.0, 1.5, 3.0, 6.0, 10.0})
+            polygons.push_back(decimals(std::min(goal.accuracy.psnr_db + more, 100.0)));
+    }
+    return {{"tessellate-for", polygons, true},
             {"hit", {"depth", "interval", "plane", "mask", "edge"}, true},
             {"normals", {"voxel", "linear"}, true},
             {"shadows", {"per-hit", "precast"}, true},
@@ -58,8 +71,6 @@ FramePoint start_of(const std::vector<FrameAxis>& axes, const FrameGoal& goal) {
         if (axes[i].option == "shadows") start[i] = 0;
         if (axes[i].option == "word-bits" && goal.accuracy.psnr_db < most_at_20_bits)
             start[i] = std::size_t(std::find(values.begin(), values.end(), "20") - values.begin());
-        if (axes[i].option == "chord-error" && !goal.accurate())
-            start[i] = std::min<std::size_t>(2, values.size() - 1);
     }
     return start;
 }
@@ -139,9 +150,8 @@ class RunModel : public FrameModel {
         trial.run = run.prefix;
         try {
             const Json json = Json::parse(file);
-            const Json& whole = json.at("accuracy");
-            trial.accuracy.psnr_db = whole.at("psnr_db").is_null() ? 200 : whole.at("psnr_db").get<double>();
-            trial.accuracy.wrong_hit_percent = whole.at("wrong_hit_percent").get<double>();
+            trial.accuracy.psnr_db = json.at("accuracy").at("scene").at("psnr_db");
+            trial.accuracy.wrong_hit_percent = json.at("accuracy").at("wrong_hit_percent");
             trial.most_voxels = json.at("voxels").at("max_per_cell");
             trial.voxel_bits = json.at("voxels").at("max_bits_per_cell");
             if (timed) trial.voxel_bits = json.at("load_queue").at("max_bits_per_cell");
@@ -185,7 +195,7 @@ std::string configuration_of(const FrameTrial& trial) {
 
 int size_frames(const RenderOptions& options, const FrameGoal& goal, bool curved, int least_store,
                 OutputSet& outputs) {
-    const std::vector<FrameAxis> axes = axes_of(options, curved, least_store);
+    const std::vector<FrameAxis> axes = axes_of(options, goal, curved, least_store);
     const RunModel model(options, axes);
     FrameSearch search(model, goal, axes, start_of(axes, goal));
     std::optional<FrameTrial> found;

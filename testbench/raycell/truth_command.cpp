@@ -18,7 +18,7 @@ namespace {
 struct TruthOptions : RenderOptions {
     bool clip = false;
     int count = 0;
-    TruthOf of = TruthOf::polygons;
+    TruthOf of = TruthOf::scene;
 };
 
 TruthRenderer::Progress progress_for(const TruthOptions& options) {
@@ -78,8 +78,8 @@ Command add_truth_command(CLI::App& program) {
                     "options from a file that truth or render wrote; the command line has precedence")
         ->type_name("FILE");
     add_scene_options(*table, *options);
-    table->choice("truth-of", options->of, {{"polygons", TruthOf::polygons}, {"scene", TruthOf::scene}},
-                  "what is rendered: the polygons that the machine loads, or spheres and cones as such");
+    table->choice("truth-of", options->of, {{"scene", TruthOf::scene}, {"polygons", TruthOf::polygons}},
+                  "what is rendered: spheres and cones as such, or the polygons that the machine loads");
     table->flag("clip", options->clip, "clip the scene to the cube");
     table->number(
         "count", options->count, 0, 8193,

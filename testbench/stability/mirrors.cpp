@@ -109,7 +109,8 @@ Accuracy picture_error(const Scene& scene, const NumberSettings& numbers, int ge
     const TruthRenderer truth(placed, {generations, 0});
     const ClassicalExterior exterior(placed, truth);
     UntimedMachine machine(placed, settings, &exterior);
-    return compare(machine.render(), truth.render(1));
+    const TruthRenderer polygons(placed, {generations, 0, false, TruthOf::polygons, &truth});
+    return compare(machine.render(), polygons.render(1));
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ SweepRow row_of(const SweepPoint& point, const Json& report) {
         const Json& deadlock = report.at("deadlock");
         row.certain = deadlock.at("bound").at("met");
         if (deadlock.contains("knot")) row.knot_cells = deadlock.at("knot").at("cells").size();
-        if (report.contains("accuracy")) row.psnr = report.at("accuracy").at("psnr_db").dump();
+        if (report.contains("accuracy")) row.psnr = report.at("accuracy").at("scene").at("psnr_db").dump();
         row.image_hash = report.at("hash").at("image");
         row.schedule_hash = report.at("hash").at("schedule");
     } catch (const Json::exception& error) {

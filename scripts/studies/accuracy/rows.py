@@ -16,10 +16,10 @@ def row_of(configuration, record, exact_record):
         **{f"{phase}_cycles": cycles[phase] for phase in ["load", "precast", "trace", "total"]},
         "bits_per_voxel": round(voxels["bits_each"], 1), "fullest_cell_bits": voxels["max_bits_per_cell"],
         "voxels": voxels["stored"], "fullest_cell_voxels": voxels["max_per_cell"],
-        "ray_bits": report["message_bits"]["ray"], "psnr_total_db": round(accuracy["psnr_db"], 3),
+        "ray_bits": report["message_bits"]["ray"], "psnr_total_db": round(accuracy["scene"]["psnr_db"], 3),
         "psnr_discretisation_db": round(exact_record["report"]["accuracy"]["psnr_db"], 3),
         "psnr_arithmetic_db": arithmetic if arithmetic == "" else round(arithmetic, 3),
-        "wrong_hit_percent": round(accuracy["wrong_hit_percent"], 4), "max_error": round(accuracy["max_error"], 6),
+        "wrong_hit_percent": round(accuracy["wrong_hit_percent"], 4), "max_error": round(accuracy["scene"]["max_error"], 6),
         "image_hash": report["hash"]["image"], "schedule_hash": report["hash"]["schedule"] if record["timed"] else "",
     }
 

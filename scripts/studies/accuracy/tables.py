@@ -218,8 +218,8 @@ def document(results, command, seconds):
 {len(results.rows)} runs, {timed} of them timed, {verdicts}; each is a row of `accuracy.csv`, from which everything here
 and the charts are made.{minutes} Command: `{command}`.
 
-- **dB** is PSNR; 200 means equal. *Total*: the machine's picture against the truth. *Discretisation*: the same machine
-  in exact arithmetic against the truth. *Arithmetic*: the machine in words against the one in exact arithmetic.
+- **dB** is PSNR; 200 means equal. *Total*: the machine's picture against the scene, what its polygons cost included.
+  *Discretisation*: the same machine in exact arithmetic against the truth of the polygons. *Arithmetic*: the machine in words against the one in exact arithmetic.
 - **Cycles** are those from the loaded array to the finished picture: precast (0 but for `--shadows precast`) and trace.
   They and the dB beside them are of the same run. Untimed runs have no cycles; their pictures are the timed ones', bit
   for bit.

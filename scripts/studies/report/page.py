@@ -116,7 +116,7 @@ def key_figures(report):
                           f"most in a cell {voxels['max_per_cell']}, {voxels['bits_each']:.0f} bits each"))
     if "accuracy" in report:
         a = report["accuracy"]
-        tiles.append(tile("accuracy", f"{a['psnr_db']:.1f} dB", f"other first hit {a['wrong_hit_percent']:.2g} %"))
+        tiles.append(tile("accuracy", f"{a['scene']['psnr_db']:.1f} dB", f"other first hit {a['wrong_hit_percent']:.2g} %"))
     return f"<dl>{''.join(tiles)}</dl>"
 
 
@@ -195,8 +195,11 @@ def truth_part(path, report):
     if "accuracy" not in report or not all(file for _, file in files):
         return ""
     a = report["accuracy"]
-    rows = [("PSNR", f"{a['psnr_db']:.2f} dB"), ("SSIM", f"{a['ssim']:.5f}"), ("FLIP", f"{a['flip']:.5f}"),
-            ("relative MSE", f"{a['relative_mse']:.3g}"), ("largest error", f"{a['max_error']:.4f}"),
+    whole = a["scene"]
+    rows = [("PSNR", f"{whole['psnr_db']:.2f} dB"), ("SSIM", f"{whole['ssim']:.5f}"), ("FLIP", f"{whole['flip']:.5f}"),
+            ("relative MSE", f"{whole['relative_mse']:.3g}"), ("largest error", f"{whole['max_error']:.4f}"),
+            ("PSNR of the polygons", f"{a['tessellation']['psnr_db']:.2f} dB"),
+            ("PSNR against the polygons", f"{a['psnr_db']:.2f} dB"),
             ("other first hit", f"{a['wrong_hit_percent']:.3g} % of the pixels")]
     figures = "".join(f'<figure><img src="{report_maps.data_uri(file.read_bytes())}" alt="{text(name)}">'
                       f"<figcaption>{text(name)}</figcaption></figure>" for name, file in files)

@@ -23,7 +23,7 @@ FIGURES = [  # name, path of keys in the JSON
     ("bits of a ray", "message_bits.ray"), ("bits of buffers, slots and registers", "storage_bits.total"),
     ("voxels", "voxels.stored"), ("bits of a voxel", "voxels.bits_each"),
     ("most bits of voxels in a cell", "voxels.max_bits_per_cell"),
-    ("PSNR, dB", "accuracy.psnr_db"), ("SSIM", "accuracy.ssim"), ("FLIP", "accuracy.flip"),
+    ("PSNR, dB", "accuracy.scene.psnr_db"), ("SSIM", "accuracy.scene.ssim"), ("FLIP", "accuracy.scene.flip"),
     ("picture's hash", "hash.image"), ("schedule's hash", "hash.schedule"),
 ]
 

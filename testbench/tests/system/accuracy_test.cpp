@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <map>
 
+#include "model/picture/compare.hpp"
 #include "program.hpp"
 #include "testbench/common/picture_file.hpp"
 
@@ -110,27 +111,41 @@ TEST(TruthOfTheScene, IsThatOfItsPolygonsUnlessAnythingIsCurved) {
     EXPECT_GT(psnr(close.at("accuracy").at("tessellation")), polygons + 5);
 }
 
-TEST(TruthOfTheScene, IsAskedForByName) {
+TEST(TruthOfTheScene, IsTheDefaultAndThatOfThePolygonsIsAskedForByName) {
     const Workshop workshop;
     const auto picture = [&](const std::string& scene, const Words& more) {
         const Words words =
             joined({"truth", own_scene(scene).string(), "--cells", "32x32", "-o", "results/t"}, more);
         EXPECT_EQ(workshop.run(words).exit_code, 0);
-        return image_hash(read_exr(workshop.result("t.exr").string()));
+        return read_exr(workshop.result("t.exr").string());
     };
-    EXPECT_EQ(picture("cornell.nff", {"--truth-of", "scene"}), picture("cornell.nff", {}));
-    EXPECT_NE(picture("still_life.nff", {"--truth-of", "scene"}), picture("still_life.nff", {}));
-    EXPECT_EQ(picture("still_life.nff", {"--truth-of", "polygons"}), picture("still_life.nff", {}));
-    EXPECT_NE(picture("still_life.nff", {"--truth-of", "scene", "--clip"}),
-              picture("still_life.nff", {"--truth-of", "scene"}))
-        << "curved surfaces are clipped, too";
+    const auto apart = [](const Picture& a, const Picture& b) { return compare(a, b).psnr_db; };
+    const Picture flat = picture("cornell.nff", {});
+    EXPECT_EQ(image_hash(picture("cornell.nff", {"--truth-of", "polygons"})), image_hash(flat));
+    const Picture scene = picture("still_life.nff", {});
+    EXPECT_EQ(image_hash(picture("still_life.nff", {"--truth-of", "scene"})), image_hash(scene));
+    EXPECT_LT(apart(picture("still_life.nff", {"--truth-of", "polygons"}), scene), 60);
+    EXPECT_EQ(apart(picture("still_life.nff", {"--chord-error", "0.2"}), scene), 200) << "no polygon is met";
+    EXPECT_LT(apart(picture("still_life.nff", {"--clip"}), scene), 60) << "curved surfaces are clipped, too";
+}
+
+TEST(TessellateFor, BringsTheWholePictureToTheAccuracyThatIsAskedFor) {
+    const Workshop workshop;
+    const Words words = {"--cells", "96x96", "--engine", "untimed", "--truth"};
+    const Json fixed = workshop.report(own_scene("still_life.nff"), words);
+    const Json finer =
+        workshop.report(own_scene("still_life.nff"), joined(words, {"--tessellate-for", "47"}));
+    ASSERT_FALSE(fixed.is_null() || finer.is_null());
+    EXPECT_GE(psnr(finer.at("accuracy").at("tessellation")), 46.5);
+    EXPECT_GE(psnr(finer.at("accuracy").at("scene")), 46);
+    EXPECT_GT(finer.at("cube").at("polygons"), fixed.at("cube").at("polygons"));
 }
 
 TEST(TruthBeside, IsThePictureThatTruthRendersAlone) {
     const Workshop workshop;
-    const Json report = workshop.report(own_scene("cornell.nff"), {"--cells", "24x32", "--truth"});
+    const Json report = workshop.report(own_scene("still_life.nff"), {"--cells", "24x32", "--truth"});
     ASSERT_EQ(
-        workshop.run({"truth", own_scene("cornell.nff").string(), "--cells", "24x32", "-o", "results/t"})
+        workshop.run({"truth", own_scene("still_life.nff").string(), "--cells", "24x32", "-o", "results/t"})
             .exit_code,
         0);
     const Picture beside = read_exr(workshop.result("a.truth.exr").string());

@@ -73,6 +73,8 @@ TEST(Reproduction, ATracedRunFromItsConfigurationIsTheSameRun) {
          "infinity",
          "--chord-error",
          "0.1234567890123",
+         "--tessellate-for",
+         "30.12345678901",
          "--max-depth",
          "3",
          "--min-weight",

@@ -9,14 +9,10 @@ namespace raycell {
 namespace {
 
 std::vector<FrameAxis> small_axes() {
-    return {{"chord-error", {"0.4", "0.1", "0.02"}, true},
-            {"hit", {"depth", "plane", "edge"}, true},
-            {"normals", {"voxel", "linear"}, true},
-            {"shadows", {"per-hit", "precast"}, true},
-            {"word-bits", {"10", "14", "20"}, true},
-            {"ray-store", {"6", "8"}, false},
-            {"buffer", {"1", "2", "4"}, false},
-            {"traversal-units", {"1", "2", "4"}, false}};
+    return {{"tessellate-for", {"30", "33", "40"}, true}, {"hit", {"depth", "plane", "edge"}, true},
+            {"normals", {"voxel", "linear"}, true},       {"shadows", {"per-hit", "precast"}, true},
+            {"word-bits", {"10", "14", "20"}, true},      {"ray-store", {"6", "8"}, false},
+            {"buffer", {"1", "2", "4"}, false},           {"traversal-units", {"1", "2", "4"}, false}};
 }
 
 /// Every value of a picture's axes brings dB and bits, every value of the others takes cycles and costs bits.

@@ -35,7 +35,8 @@ Json rendered(const Workshop& workshop, const Words& words, int exit_code = 0) {
 }
 
 bool reaches(const Json& report, const Json& goal) {
-    return report.at("accuracy").at("psnr_db").get<double>() >= goal.at("psnr_db").get<double>() &&
+    return report.at("accuracy").at("scene").at("psnr_db").get<double>() >=
+               goal.at("psnr_db").get<double>() &&
            report.at("accuracy").at("wrong_hit_percent").get<double>() <=
                goal.at("wrong_hit_percent").get<double>();
 }
@@ -45,7 +46,7 @@ void expect_rendered_as_found(const Workshop& workshop, const Json& sized) {
     const Json& found = sized.at("found");
     EXPECT_EQ(report.at("verdict"), "completed");
     EXPECT_TRUE(reaches(report, sized.at("goal")));
-    EXPECT_EQ(report.at("accuracy").at("psnr_db"), found.at("psnr_db"));
+    EXPECT_EQ(report.at("accuracy").at("scene").at("psnr_db"), found.at("psnr_db"));
     EXPECT_EQ(report.at("accuracy").at("wrong_hit_percent"), found.at("wrong_hit_percent"));
     EXPECT_EQ(report.at("voxels").at("max_bits_per_cell"), found.at("bits_fullest_cell"));
     EXPECT_EQ(report.at("voxels").at("max_per_cell"), found.at("voxel_capacity"));
@@ -81,7 +82,7 @@ bool was_tried(const Json& sized, const Json& report) {
                trial.at("shadows") == config.at("shadows") &&
                trial.at("depth_levels") == config.at("depth") &&
                trial.at("word_bits") == config.at("word-bits") &&
-               trial.at("psnr_db") == report.at("accuracy").at("psnr_db");
+               trial.at("psnr_db") == report.at("accuracy").at("scene").at("psnr_db");
     };
     const Json& tried = sized.at("tried");
     return std::any_of(tried.begin(), tried.end(), same);

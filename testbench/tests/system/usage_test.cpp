@@ -98,6 +98,7 @@ TEST(Usage, WholeNumbersOutOfRangeAreRefused) {
 TEST(Usage, RealNumbersOutOfRangeAreRefused) {
     const std::vector<std::pair<std::string, Words>> options = {
         {"chord-error", {"0", "-0.1", "1001", "1e-4"}},
+        {"tessellate-for", {"-1", "100.1"}},
         {"min-weight", {"-0.1", "1.1", "-1e-9"}},
         {"clock-mhz", {"0", "-20", "1e6", "1e-4"}},
         {"normal-offset", {"-1.1", "1.5"}}};

@@ -49,7 +49,9 @@ Accuracy accuracy_of(const SceneCase& scene, int side, const NumberSettings& num
     const TruthRenderer truth(placed, {settings.max_depth, settings.min_weight});
     const ClassicalExterior exterior(placed, truth);
     UntimedMachine machine(placed, settings, &exterior);
-    return compare(machine.render(), truth.render());
+    const TruthRenderer polygons(placed,
+                                 {settings.max_depth, settings.min_weight, false, TruthOf::polygons, &truth});
+    return compare(machine.render(), polygons.render());
 }
 
 Accuracy in_words(const SceneCase& scene, int side, int word_bits) {

@@ -37,31 +37,33 @@ TEST(CurvedSurface, OwnsItsPolygonsAndNoOthers) {
 }
 
 TEST(CurvedSurface, IsMetWhereARayEntersItAndThenWhereItLeaves) {
-    EXPECT_DOUBLE_EQ(*meet(sphere(), {-9, 2, 3}, {1, 0, 0}, 0, far, false), 8);
-    EXPECT_DOUBLE_EQ(*meet(sphere(), {-9, 2, 3}, {1, 0, 0}, 8.5, far, false), 12);
-    EXPECT_FALSE(meet(sphere(), {-9, 2, 3}, {1, 0, 0}, 0, 7, false));
-    EXPECT_FALSE(meet(sphere(), {-9, 4.001, 3}, {1, 0, 0}, 0, far, false));
+    EXPECT_DOUBLE_EQ(*meet(sphere(), {-9, 2, 3}, {1, 0, 0}, 0, far, std::nullopt), 8);
+    EXPECT_DOUBLE_EQ(*meet(sphere(), {-9, 2, 3}, {1, 0, 0}, 8.5, far, std::nullopt), 12);
+    EXPECT_FALSE(meet(sphere(), {-9, 2, 3}, {1, 0, 0}, 0, 7, std::nullopt));
+    EXPECT_FALSE(meet(sphere(), {-9, 4.001, 3}, {1, 0, 0}, 0, far, std::nullopt));
 }
 
 TEST(CurvedSurface, IsNotMetByARayThatLeavesItWhereItLeavesThoughRoundingPutTheOriginAside) {
     for (const double aside : {-1e-5, 0.0, 1e-5}) {
         const dvec3 origin(3 + aside, 2, 3);
-        EXPECT_FALSE(meet(sphere(), origin, {1, 0, 0}, 1e-7, far, true)) << aside;
-        EXPECT_NEAR(*meet(sphere(), origin, {-1, 0, 0}, 1e-7, far, true), 4, 2e-5) << "through the inside";
+        EXPECT_FALSE(meet(sphere(), origin, {1, 0, 0}, 1e-7, far, 0.0)) << aside;
+        EXPECT_NEAR(*meet(sphere(), origin, {-1, 0, 0}, 1e-7, far, 0.0), 4, 2e-5) << "through the inside";
     }
 }
 
 TEST(CurvedSurface, OfAConeEndsAtItsBaseAndAtItsTip) {
-    EXPECT_NEAR(*meet(cone(), {-9, 0, 1}, {1, 0, 0}, 0, far, false), 9 - 1.5, 1e-12);
-    EXPECT_FALSE(meet(cone(), {-9, 0, 4.001}, {1, 0, 0}, 0, far, false));
-    EXPECT_FALSE(meet(cone(), {-9, 0, -0.001}, {1, 0, 0}, 0, far, false));
-    EXPECT_FALSE(meet(cone(), {1, 0, -9}, {0, 0, -1}, 0, far, false)) << "it lies behind";
-    EXPECT_NEAR(*meet(cone(), {1, 0, -9}, {0, 0, 1}, 0, far, false), 11, 1e-12) << "no cap at the base";
+    EXPECT_NEAR(*meet(cone(), {-9, 0, 1}, {1, 0, 0}, 0, far, std::nullopt), 9 - 1.5, 1e-12);
+    EXPECT_FALSE(meet(cone(), {-9, 0, 4.001}, {1, 0, 0}, 0, far, std::nullopt));
+    EXPECT_FALSE(meet(cone(), {-9, 0, -0.001}, {1, 0, 0}, 0, far, std::nullopt));
+    EXPECT_FALSE(meet(cone(), {1, 0, -9}, {0, 0, -1}, 0, far, std::nullopt)) << "it lies behind";
+    EXPECT_NEAR(*meet(cone(), {1, 0, -9}, {0, 0, 1}, 0, far, std::nullopt), 11, 1e-12)
+        << "no cap at the base";
 }
 
 TEST(CurvedSurface, CountsInsideABoxAloneIfThereIsOne) {
     const Box box{{0, 0, 0}, {9, 9, 9}};
-    EXPECT_DOUBLE_EQ(*meet(sphere(), {-9, 2, 3}, {1, 0, 0}, 0, far, false, &box), 12) << "it enters outside";
+    EXPECT_DOUBLE_EQ(*meet(sphere(), {-9, 2, 3}, {1, 0, 0}, 0, far, std::nullopt, &box), 12)
+        << "it enters outside";
 }
 
 TEST(CurvedSurface, HasUnitNormalsThatPointOutwardsUnlessItIsInward) {

@@ -295,5 +295,50 @@ TEST(SceneTruthOfOneOfEach, IsWhatATracerInWorldCoordinatesSees) {
     EXPECT_GE(accuracy.psnr_db, 100) << "a channel is off by " << accuracy.max_error;
 }
 
+/// The exterior is handed the rest of a ray: it begins where the ray left the cube, not on what it left.
+TEST(RestOfARay, MeetsTheFarSideOfTheSphereThatItIsInAndNotTheSideThatItLeft) {
+    CellScene scene;
+    scene.frame.width = scene.frame.height = 16;
+    scene.frame.depth = 16;
+    scene.objects.resize(1);
+    CurvedSurface ball;
+    ball.base = {8, 8, 16};
+    ball.base_radius = 6;
+    ball.polygons = 1;
+    scene.curved.push_back(ball);
+    const TruthRenderer truth(scene);
+    const dvec3 border{8, 8, 20};  // the ray came in at 10 and goes out at 22
+    const auto far = truth.intersect(border, {0, 0, 1}, 0, 100, -10);
+    ASSERT_TRUE(far);
+    EXPECT_NEAR(far->t, 2, 1e-9);
+    EXPECT_TRUE(truth.occluded(border, {0, 0, 1}, 0, 100, -10));
+    EXPECT_FALSE(truth.intersect({8, 8, 21.9}, {0, 0, 1}, 0, 100, 0.05))
+        << "it left a facet inside of the ball";
+    EXPECT_FALSE(truth.intersect({8, 8, 30}, {0, 0, 1}, 0, 100, -8));
+}
+
+/// Polygons inside the cube and the scene outside: the truth of a machine with an exterior.
+TEST(TruthBeyondTheCube, MeetsPolygonsInsideAndTheSceneOutside) {
+    Diagnostics diagnostics;
+    const Scene scene = read_nff_text(
+        "b .2 .3 .5 v from 0 -9 0 at 0 0 0 up 0 0 1 angle 12 hither 1 resolution 9 9 l 5 -6 9 "
+        "f .9 .9 1 .1 .8 60 0 1 s 0 0 0 .7 f .2 .9 .3 .8 0 9 0 1 s 2 -12 2 2 s 1 -3 -4 1.5 ",
+        "a mirror and what it shows", diagnostics);
+    PictureSettings settings;
+    settings.width = settings.height = 48;
+    settings.chord_error = 0.2;
+    const CellScene placed = place_scene(scene, place_frame(scene, settings), settings);
+    const TruthRenderer itself(placed);
+    const TruthRenderer polygons(placed, {4, 1.0 / 256, false, TruthOf::polygons});
+    const TruthRenderer both(placed, {4, 1.0 / 256, false, TruthOf::polygons, &itself});
+    const Picture exact = itself.render();
+    const Picture seen = both.render();
+    const double mixed = compare(seen, exact).psnr_db;
+    EXPECT_LT(mixed, 100) << "the mirror is made of polygons";
+    EXPECT_LT(compare(seen, polygons.render()).psnr_db, 100) << "what it shows is not";
+    const TruthRenderer twice(placed, {4, 1.0 / 256, false, TruthOf::scene, &itself});
+    EXPECT_GE(compare(twice.render(), exact).psnr_db, 150) << "the border alone changes nothing";
+}
+
 }  // namespace
 }  // namespace raycell
