@@ -176,17 +176,39 @@ def saturation(axis, study):
     axis.set(title="Inputs beyond the formats, 20 bits", xlabel="input's value", ylabel="error of the picture, rms")
 
 
+def chord_error(axis, study):
+    for radius, style in [("0.5", ":"), ("2", "--"), ("8", "-")]:
+        for arithmetic in ["exact", "fixed 20", "fixed 8"]:
+            axis.plot(*study.line("chord_error_cells", "largest_place_error_cells", arithmetic=arithmetic, radius_cells=radius), style,
+                      marker=".", color=COLOURS[arithmetic], label=f"{arithmetic}, radius {radius}", lw=1.2)
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    axis.set(title="Spheres of facets", xlabel="chord error, cells", ylabel="largest distance of a hit\nfrom the sphere, cells")
+
+
+def loading_order(axis, study):
+    for surfaces, style in [("apart", "-"), ("each twice", ":")]:
+        for arithmetic in study.values("arithmetic"):
+            rows = {row["rung"]: row for row in study.rows if row["surfaces"] == surfaces and row["arithmetic"] == arithmetic}
+            axis.plot(list(rows), [float(row["other_pixels_percent"]) for row in rows.values()], style, marker=".",
+                      color=COLOURS[arithmetic], label=f"{surfaces}, {arithmetic}", lw=1.2)
+    axis.set_yscale("symlog", linthresh=0.01)
+    axis.set(title="Polygons loaded in another order", xlabel="rung", ylabel="pixels that change, %")
+
+
 CHARTS = [slopes, dda_drift, span_drift, normals, grazing, critical, mirrors, offset, near_viewer, coincident, small,
-          saturation]
+          chord_error, loading_order, saturation]
 
 
 def draw(folder, file):
     from matplotlib import pyplot as plt  # needed only here
-    figure, axes = plt.subplots(4, 3, figsize=(14, 15))
+    figure, axes = plt.subplots(5, 3, figsize=(14, 18.5))
     for axis, chart in zip(axes.flat, CHARTS):
         chart(axis, Study(folder / f"{chart.__name__}.csv"))
         axis.grid(True, lw=0.3)
         axis.legend(fontsize=7, framealpha=0.7)
+    for axis in axes.flat[len(CHARTS):]:
+        axis.set_visible(False)
     figure.tight_layout()
     figure.savefig(file, dpi=75)
 

@@ -37,6 +37,9 @@ constexpr Study studies[] = {
     {"near_viewer", "the viewer close to the screen: oblique primary rays", study_near_viewer},
     {"coincident", "coincident and crossing surfaces: which one is seen", study_coincident},
     {"small", "triangles smaller than a cell: where they get lost", study_small},
+    {"chord_error", "spheres of ever finer facets: hits off the sphere, rays that get lost",
+     study_chord_error},
+    {"loading_order", "polygons loaded in another order: which pixels change", study_loading_order},
     {"saturation", "the ends of the formats: sources, colours, depths, shine, refraction", study_saturation},
 };
 

@@ -16,6 +16,8 @@ Report study_offset(const Effort& effort);
 Report study_near_viewer(const Effort& effort);
 Report study_coincident(const Effort& effort);
 Report study_small(const Effort& effort);
+Report study_chord_error(const Effort& effort);
+Report study_loading_order(const Effort& effort);
 Report study_saturation(const Effort& effort);
 
 }  // namespace raycell::stability

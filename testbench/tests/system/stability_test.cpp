@@ -296,5 +296,32 @@ TEST_F(Stability, WhatItDoesNotKnowIsOneMessageAndExitCodeOne) {
     EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 12);
 }
 
+TEST_F(Stability, SpheresOfFacetsAreMetWithinTheirChordErrorAndLoseNoRay) {
+    for (const Row& row : study("chord_error")) {
+        SCOPED_TRACE(row.at("arithmetic") + ", radius " + row.at("radius_cells") + ", chord error " +
+                     row.at("chord_error_cells"));
+        const double chord_error = number(row, "chord_error_cells");
+        if (row.at("arithmetic") == "exact") {
+            EXPECT_LE(number(row, "largest_place_error_cells"), 0.5 * chord_error * (1 + 1e-6));
+            EXPECT_EQ(number(row, "hits_beside_percent"), 0);
+        }
+        if (row.at("arithmetic") != "fixed 8") EXPECT_EQ(number(row, "rays_lost_percent"), 0);
+    }
+}
+
+TEST_F(Stability, TheOrderOfLoadingChangesNoPixelWhereNoTwoSurfacesLieInOnePlace) {
+    std::size_t twice = 0;
+    for (const Row& row : study("loading_order")) {
+        SCOPED_TRACE(row.at("surfaces") + ", " + row.at("rung") + ", " + row.at("arithmetic"));
+        EXPECT_EQ(number(row, "other_cells_percent"), 0);
+        if (row.at("surfaces") == "each twice") {
+            twice += number(row, "other_pixels_percent") > 0;
+        } else if (row.at("rung") == "edge" && row.at("arithmetic") == "exact") {
+            EXPECT_EQ(number(row, "other_pixels_percent"), 0);
+        }
+    }
+    EXPECT_GT(twice, 0u) << "else this tests nothing";
+}
+
 }  // namespace
 }  // namespace raycell::system_test
