@@ -8,7 +8,7 @@
 namespace raycell::stability {
 namespace {
 
-constexpr double size = 24;  ///< of the cube, cells
+constexpr double size = 48;  ///< of the cube, cells: rays start inside
 
 struct Ball {
     CellScene scene;

@@ -16,8 +16,8 @@ CellScene make_scene(int triangles, bool twins, Random& random) {
     for (int object = 0; object < 4; ++object) {
         Material m;
         m.colour = {random.uniform(0.2, 1), random.uniform(0.2, 1), random.uniform(0.2, 1)};
-        m.kd = 0.7;
-        m.ks = random.chance(0.5) ? 0.4 : 0;
+        m.diffuse = 0.7;
+        m.specular = random.chance(0.5) ? 0.4 : 0;
         add_object(scene, m);
     }
     Source source;

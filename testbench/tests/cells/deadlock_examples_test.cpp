@@ -43,10 +43,12 @@ class Variants {
 };
 
 Variants of_own_scene(const std::string& name, int cells, int max_depth,
-                      const std::vector<Variants::Change>& changes) {
+                      const std::vector<Variants::Change>& changes,
+                      double min_weight = PictureSettings().min_weight) {
     PictureSettings settings;
     settings.width = settings.height = cells;
     settings.max_depth = max_depth;
+    settings.min_weight = min_weight;
     const auto placed = place_own_scene(name, settings);
     return Variants(placed->scene, settings, placed->exterior.get(), changes);
 }
@@ -108,10 +110,11 @@ TEST(TimedDeadlockExamples, ARayThatWaitsForASlotAtTheHeadOfABufferLocksWherePos
 }
 
 TEST(TimedDeadlockExamples, FreeSlotsAreALivelockWhereReservedAndNestedOnesEnd) {
-    const Variants run = of_own_scene("still_life", 18, 2,
-                                      {[](MachineSettings& m) { m.ray_store = 3, m.slots = Slots::free; },
-                                       [](MachineSettings& m) { m.ray_store = 3; },
-                                       [](MachineSettings& m) { m.ray_store = 3, m.slots = Slots::nested; }});
+    const Variants run = of_own_scene("still_life", 20, 3,
+                                      {[](MachineSettings& m) { m.ray_store = 4, m.slots = Slots::free; },
+                                       [](MachineSettings& m) { m.ray_store = 4; },
+                                       [](MachineSettings& m) { m.ray_store = 4, m.slots = Slots::nested; }},
+                                      0);
     run.expect_stuck(0, Verdict::livelock);
     run.expect_picture(1);
     run.expect_picture(2);

@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Machines, EveryCycle,
                                            Case{"cornell", Networks::half, Shadows::per_hit, 5, 1000, 0},
                                            Case{"still_life", Networks::half, Shadows::memo, 6, 40, 0.3},
                                            Case{"still_life", Networks::half, Shadows::precast, 6, 7, 0},
-                                           Case{"still_life", Networks::split, Shadows::per_hit, 64, 20, 0},
+                                           Case{"cornell", Networks::split, Shadows::per_hit, 64, 20, 0},
                                            Case{"facing_mirrors", Networks::quadrant, Shadows::per_hit, 6, 20,
                                                 0.2}));
 

@@ -88,7 +88,7 @@ TEST(Knot, OfFullRayStoresIsNotThereWithASlotMoreThanItTakes) {
 TEST(Knot, OfBothIsFoundWhereSlotsAndBuffersAreShort) {
     Stuck stuck("still_life", [](PictureSettings&, MachineSettings& m) {
         m.networks = Networks::split;
-        m.ray_store = 1;
+        m.ray_store = 2;
         m.recovery = Recovery::none;
         m.slots = Slots::free;
     });
@@ -143,7 +143,7 @@ TEST(TimeOut, AlarmsInACellOfEveryKnotOfBuffersWhatIsProvedLocked) {
 
 TEST(TimeOut, MissesCellsInWhichOnlyASlotWaitsButNoKnotOfFullRayStores) {
     Stuck stuck("still_life", [](PictureSettings&, MachineSettings& m) {
-        m.ray_store = 4;
+        m.ray_store = 6;
         m.recovery = Recovery::none;
     });
     ASSERT_TRUE(stuck.result.waits.deadlocked());

@@ -45,7 +45,10 @@ TEST_P(OwnScene, SeesTheSameFirstPolygonsAsTheTruth) {
     const auto placed = place_own_scene(GetParam(), settings);
     UntimedMachine machine(placed->scene, settings, placed->exterior.get());
     const Picture picture = machine.render();
-    const Picture truth = placed->truth->render();
+    TruthSettings of_polygons;
+    of_polygons.of = TruthOf::polygons;
+    of_polygons.beyond = placed->truth.get();
+    const Picture truth = TruthRenderer(placed->scene, of_polygons).render();
     int wrong = 0;
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
         const Pixel& a = picture.pixels[i];

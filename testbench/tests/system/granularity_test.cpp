@@ -95,7 +95,7 @@ TEST(Granularity, OfTilesTakesAFractionOfTheMemoryOfModules) {
         return report.at("model").at("bytes_per_cell").get<double>();
     };
     const double tile = bytes({"--granularity", "tile"});
-    EXPECT_LT(tile, 2048);
+    EXPECT_LT(tile, 2200);
     EXPECT_GT(bytes({"--granularity", "cell"}), 3 * tile);
     EXPECT_LT(bytes({"--detail", "0..9,0..9"}), 1.2 * tile);
 }

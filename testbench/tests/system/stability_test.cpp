@@ -293,7 +293,7 @@ TEST_F(Stability, WhatItDoesNotKnowIsOneMessageAndExitCodeOne) {
     }
     EXPECT_EQ(run_stability(workshop, "--help").exit_code, 0);
     const std::string list = run_stability(workshop, "--list").out;
-    EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 12);
+    EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 14);
 }
 
 TEST_F(Stability, SpheresOfFacetsAreMetWithinTheirChordErrorAndLoseNoRay) {
