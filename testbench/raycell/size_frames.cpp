@@ -32,7 +32,7 @@ std::string decimals(double value) {
 std::vector<FrameAxis> axes_of(const RenderOptions& options, const FrameGoal& goal, bool curved,
                                int least_store) {
     std::vector<std::string> stores;
-    for (const int slots : {least_store, least_store + 1, 8, 12, 16}) {
+    for (const int slots : {least_store, least_store + 1, 8, 12, 16, 24, 32}) {
         if (stores.empty() || slots > std::stoi(stores.back())) stores.push_back(std::to_string(slots));
     }
     std::vector<std::string> levels;
@@ -53,11 +53,11 @@ std::vector<FrameAxis> axes_of(const RenderOptions& options, const FrameGoal& go
             {"word-bits", {"8", "10", "11", "12", "13", "14", "16", "18", "20", "24", "28", "32"}, true},
             {"depth", levels, true},
             {"ray-store", stores, false},
-            {"buffer", {"1", "2", "4"}, false},
+            {"buffer", {"1", "2", "4", "8"}, false},
             {"loading-units", {"1", "2", "4"}, false},
             {"traversal-units", {"1", "2", "4"}, false},
             {"networks", {"half", "quadrant"}, false},
-            {"feed-lanes", {"4", "16", "64"}, false}};
+            {"feed-lanes", {"4", "16", "64", "128"}, false}};
 }
 
 /// The machine from which pictures are tried: words of 20 bits, or of 32 for what needs more; the cheapest
