@@ -10,6 +10,8 @@ STUDIES = {
     "sweep": "studies.sweeps.snakemake",
     "datapaths": "studies.datapaths",
     "feed": "studies.feed",
+    "trace": "studies.trace",
+    "whole_frames": "studies.whole_frames",
     "ladder": "studies.ladder",
     "figures": "studies.figures",
     "stability": "studies.stability",
