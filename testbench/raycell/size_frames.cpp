@@ -187,7 +187,7 @@ std::string configuration_of(const FrameTrial& trial) {
     std::ifstream file(trial.run + ".json");
     Json config = Json::parse(file).at("config");
     config["output"] = RenderOptions().prefix;
-    config["quiet"] = false;
+    config["quiet"] = config["truth"] = false;
     return to_toml(config);
 }
 
