@@ -23,7 +23,8 @@ def run(root, scenes, cache, scene, datapath):
         cells = list(csv.DictReader(file))
     report["busiest"] = {unit: max(int(c[f"{unit}_cycles"]) for c in cells) / report["cycles"]["trace"]
                          for unit in ("traversal", "shading")}
-    report["making"] = max(int(c["loading_cycles"]) for c in cells) / report["cycles"]["load"]
+    report["busiest"]["traversal"] /= report["config"]["traversal-units"]  # the mean of a cell's units
+    report["making"] = max(int(c["loading_cycles"]) for c in cells) / report["cycles"]["load"] / report["config"]["loading-units"]
     return report
 
 
@@ -42,8 +43,8 @@ def units_of(report):
     """Shares of loading, and of the trace, in which units are at work."""
     return {"loading: the busiest cell makes voxels": report["making"],
             "loading: precomputation": report["stages"]["precomputation"]["utilisation"],
-            "trace: traversal unit, mean": report["units"]["traversal"]["utilisation"],
-            "traversal unit of the busiest cell": report["busiest"]["traversal"],
+            "trace: traversal units, mean": report["units"]["traversal"]["utilisation"],
+            "traversal units of the busiest cell": report["busiest"]["traversal"],
             "shading unit of the busiest cell": report["busiest"]["shading"],
             "exterior": report["stages"]["exterior"]["utilisation"]}
 
