@@ -29,14 +29,17 @@ Binding Machine::longest_tree() {
     if (env.phase != Phase::trace) throw std::logic_error("internal error: there was no trace");
     before_cycle_ = {};
     progress_ = {};
-    for (const std::size_t pixel : pixels_with_most_hops(std::vector<std::uint32_t>(env.meters.pixel_hops))) {
+    for (const std::size_t pixel : pixels_with_most_hops(env.meters.pixel_hops)) {
         const int x = int(pixel % std::size_t(env.width()));
         const int y = int(pixel / std::size_t(env.width()));
+        const std::uint64_t destroyed = env.meters.counters.rays_destroyed;
         env.phase_start = parts_.scheduler.now();
         parts_.array.begin_tree(x, y);
         parts_.scheduler.begin();
         sc_core::sc_start();
         if (env.pools.rays.in_use() + env.pools.answers.in_use() > 0) return {};  // interrupted
+        // With too few slots a tree is in its own way, and its back-offs are drawn anew.
+        if (env.meters.counters.rays_destroyed > destroyed) continue;
         longest.consider(
             {Binding::Unit::tree, x, y, Side::east, env.meters.counters.last_progress - env.phase_start});
     }

@@ -22,6 +22,29 @@ Answer answer_to(int x, int y, Answer::Kind kind, unsigned slot) {
     return answer_for(ray, kind, kind == Answer::Kind::intensity ? dvec3(0.5, 0.25, 1) : dvec3(0));
 }
 
+/// Three rays that arrive in one cycle, for three outputs; `units` test them, 1 or 2.
+Scenario three_rays(const char* name, const char* purpose, int units) {
+    Script script = empty_cell(name, purpose);
+    script.setup().machine.traversal_units = units;
+    const Ray from_east = ray_of(RayKind::reflected, {1, 0.5, 5}, {-1, 0, 0});
+    const Ray from_south = ray_of(RayKind::reflected, {0.5, 1, 5}, {0, -1, 0});
+    const Ray from_west = ray_of(RayKind::reflected, {0, 0.5, 5}, {1, 0, 0});
+    // The own ray was tested last, and its place is the last one.
+    constexpr Cycle first = sent + ray_link + walk;
+    const Cycle second = units > 1 ? first : first + walk;
+    const Cycle third = second + walk;
+    script.in(sent, Side::east, west_bound, ray_link, from_east)
+        .in(sent, Side::south, east_bound, ray_link, from_south)
+        .in(sent, Side::west, east_bound, ray_link, from_west)
+        .take(first, Side::east, west_bound)
+        .out(first, Side::west, west_bound, ray_link, from_east)
+        .take(second, Side::south, east_bound)
+        .out(second, Side::north, east_bound, ray_link, from_south)
+        .take(third, Side::west, east_bound)
+        .out(third, Side::east, east_bound, ray_link, from_west);
+    return script.until(sent + 1000);
+}
+
 void add_ties(std::vector<Scenario>& all) {
     {
         Script script =
@@ -47,48 +70,14 @@ void add_ties(std::vector<Scenario>& all) {
             .out(third, Side::north, answers, intensity_link, west);
         all.push_back(script.until(sent + 1000));
     }
-    {
-        Script script =
-            empty_cell("tests_in_turn",
-                       "of three rays that arrive in one cycle the one from the east is tested first, "
-                       "then south, then west: the place after the last one tested comes first");
-        const Ray from_east = ray_of(RayKind::reflected, {1, 0.5, 5}, {-1, 0, 0});
-        const Ray from_south = ray_of(RayKind::reflected, {0.5, 1, 5}, {0, -1, 0});
-        const Ray from_west = ray_of(RayKind::reflected, {0, 0.5, 5}, {1, 0, 0});
-        constexpr Cycle there = sent + ray_link;
-        // The own ray was tested last, and its place is the last one.
-        script.in(sent, Side::east, west_bound, ray_link, from_east)
-            .in(sent, Side::south, east_bound, ray_link, from_south)
-            .in(sent, Side::west, east_bound, ray_link, from_west)
-            .take(there + walk, Side::east, west_bound)
-            .out(there + walk, Side::west, west_bound, ray_link, from_east)
-            .take(there + 2 * walk, Side::south, east_bound)
-            .out(there + 2 * walk, Side::north, east_bound, ray_link, from_south)
-            .take(there + 3 * walk, Side::west, east_bound)
-            .out(there + 3 * walk, Side::east, east_bound, ray_link, from_west);
-        all.push_back(script.until(sent + 1000));
-    }
-    {
-        Script script =
-            empty_cell("two_units",
-                       "of three rays that arrive in one cycle two are tested at the same time by two units, "
-                       "the third when one is free");
-        script.setup().machine.traversal_units = 2;
-        const Ray from_east = ray_of(RayKind::reflected, {1, 0.5, 5}, {-1, 0, 0});
-        const Ray from_south = ray_of(RayKind::reflected, {0.5, 1, 5}, {0, -1, 0});
-        const Ray from_west = ray_of(RayKind::reflected, {0, 0.5, 5}, {1, 0, 0});
-        constexpr Cycle there = sent + ray_link;
-        script.in(sent, Side::east, west_bound, ray_link, from_east)
-            .in(sent, Side::south, east_bound, ray_link, from_south)
-            .in(sent, Side::west, east_bound, ray_link, from_west)
-            .take(there + walk, Side::east, west_bound)
-            .out(there + walk, Side::west, west_bound, ray_link, from_east)
-            .take(there + walk, Side::south, east_bound)
-            .out(there + walk, Side::north, east_bound, ray_link, from_south)
-            .take(there + 2 * walk, Side::west, east_bound)
-            .out(there + 2 * walk, Side::east, east_bound, ray_link, from_west);
-        all.push_back(script.until(sent + 1000));
-    }
+    all.push_back(three_rays("tests_in_turn",
+                             "of three rays that arrive in one cycle the one from the east is tested first, "
+                             "then south, then west: the place after the last one tested comes first",
+                             1));
+    all.push_back(three_rays("two_units",
+                             "of three rays that arrive in one cycle two are tested at the same time by two "
+                             "units, the third when one is free",
+                             2));
     {
         Script script =
             empty_cell("rays_in_turn",

@@ -193,5 +193,25 @@ INSTANTIATE_TEST_SUITE_P(Shared, EverySharedScene, ::testing::ValuesIn(every_sha
                              return name;
                          });
 
+TEST(Bound, OfTheTraceIsTheTreeItselfInAnArrayOfOneCell) {
+    const Workshop workshop;
+    const Json one = workshop.report(own_scene("cornell.nff"), {"--cells", "1x1"});
+    EXPECT_EQ(one.at("bound").at("trace").at("of"), "the tree of pixel (0, 0) alone");
+    EXPECT_EQ(one.at("bound").at("trace").at("cycles"), one.at("cycles").at("trace"));
+    EXPECT_GT(one.at("cycles").at("trace").get<int>(), 0);
+}
+
+TEST(Bound, IsNoLongerThanTheRun) {
+    const Workshop workshop;
+    for (const Words& words :
+         {Words{}, Words{"--shadows", "memo"}, Words{"--ray-store", "5", "--max-depth", "6"},
+          Words{"--traversal-units", "4", "--loading-units", "4", "--buffer", "4"}}) {
+        const Json run = workshop.report(own_scene("still_life.nff"), joined({"--cells", "16x16"}, words));
+        for (const char* phase : {"load", "trace"})
+            EXPECT_LE(run.at("bound").at(phase).at("cycles").get<int>(),
+                      run.at("cycles").at(phase).get<int>());
+    }
+}
+
 }  // namespace
 }  // namespace raycell::system_test
