@@ -98,11 +98,11 @@ std::optional<LoadItem::Kind> pass_load(LoadingUnits& unit, LinkIn& from, LinkOu
     const bool ends = LoadingUnits::ends_at(*item, x, environment.width());
     if (!ends && !east->can_send(0, wakeup.next)) return std::nullopt;
     meter.load_passed(environment.meters.counters, ends);
-    LoadingUnits::take(*item, x, store, environment.context);
+    const std::uint32_t lines = LoadingUnits::take(*item, x, store, environment.context);
     from.pop(0);
     unit.finish();
     if (makes) {
-        unit.keep(making, now);
+        unit.keep(making, lines * environment.costs().load_order, now);
         meter.kept(making);
         count_kept(environment, store, unit.kept(making, now), unit.count());
         environment.scheduler.sample_at(unit.made(), unit.made());

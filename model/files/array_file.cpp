@@ -150,6 +150,7 @@ CellStore get_cell(Reader& reader) {
     const std::size_t intensities = reader.count(most_things);
     // Grows one element at a time: a damaged count must not ask for memory that the file can't fill.
     for (std::size_t i = 0; i < voxels; ++i) fields_of_voxel(get, cell.voxels.emplace_back());
+    make_index(cell);
     for (std::size_t i = 0; i < edges; ++i) fields_of_edge(get, cell.edges.emplace_back());
     for (std::size_t i = 0; i < intensities; ++i) get.vector(cell.intensities.emplace_back());
     return cell;

@@ -77,13 +77,14 @@ SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machin
 namespace {
 
 /// Bits of a traversal unit's registers: nearest hit so far, crossing, the ray's depth run in the cell,
-/// counters over voxels and edges, places of the ray and of the next round's beginning, a point, a sum.
+/// the line of the index table, its voxel, a counter over edges, places of the ray and of the next round's
+/// beginning, a point, a sum.
 int traversal_bits(const MachineSettings& machine, const Formats& formats, int ray_inputs) {
     const int distance = formats.distance.bits();
     const int nearest = 1 + distance + field::voxel_index;
     const int crossing = distance + 2;
     const int run = 2 * formats.depth_word_bits();
-    const int counters = field::voxel_index + field::edge_count;
+    const int counters = 2 * field::voxel_index + field::edge_count;
     const int places = 2 * bits_for(ray_inputs + 1 + machine.ray_store);
     const int point = 2 * formats.word_bits + formats.depth_word_bits();
     return nearest + crossing + run + counters + places + point + formats.accumulator.bits();

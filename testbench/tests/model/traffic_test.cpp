@@ -355,7 +355,7 @@ TEST(StorageBits, OfRegistersAreThoseOfTheTable) {
     EXPECT_EQ(bits.ages, (6 + 4 + 2) * 17);
     EXPECT_EQ(bits.credits, 10 * 2 + 8 * 4);
     EXPECT_EQ(bits.outputs, 4 * 256);
-    EXPECT_EQ(bits.traversal, 2 * (40 + 31 + 56 + 18 + 8 + 68 + 40));
+    EXPECT_EQ(bits.traversal, 2 * (40 + 31 + 56 + 28 + 8 + 68 + 40));
     EXPECT_EQ(bits.shading, 12 + 4 * 60 + 20 + 40 + 112 + 129 + 10 + 87);
     EXPECT_EQ(bits.loading, 2 * ((943 - 3) + (104 - 3)));
     EXPECT_EQ(bits.latches, 217 + 162);
