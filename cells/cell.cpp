@@ -30,7 +30,7 @@ void Cell::begin_phase() {
     if (env_.context.settings.shadows == Shadows::memo && env_.phase == Phase::trace) {
         asked_.assign(store_.voxels.size(), 0);
     }
-    injector_.begin_phase(env_.phase == Phase::trace);
+    injector_.begin_phase(env_.phase == Phase::trace, start_of_primary(env_, x_, y_));
 }
 
 Cycle Cell::step(Cycle now) {

@@ -31,6 +31,11 @@ void end_ray(RayPacket& packet, Environment& environment, CellMeter& meter) {
     environment.pools.rays.give_back(&packet);
 }
 
+Cycle start_of_primary(const Environment& environment, int x, int y) {
+    const auto pixel = std::uint64_t(y) * std::uint64_t(environment.width()) + std::uint64_t(x);
+    return environment.phase_start + 1 + Retry::first_start(environment.machine, ray_id(pixel, 0));
+}
+
 Ray begin_primary(Injector& injector, Environment& environment, int x, int y) {
     if (injector.primary_sent()) {
         ++environment.meters.counters.rays.primary;

@@ -198,9 +198,10 @@ std::uint64_t loading_timing(const MachineSettings& machine) {
     put.whole(machine.feed_bits), put.whole(machine.feed_lanes), put.whole(machine.load_queue);
     put.whole(machine.loading_units);
     const CostTable& c = machine.costs;
-    for (const std::uint32_t cost : {c.load_depth, c.load_interval, c.load_plane, c.load_mask, c.load_edge,
-                                     c.load_forward, c.load_advance, c.geometry_polygon, c.geometry_skip,
-                                     c.precomputation_trapeze, c.distribution_span, c.distribution_pass})
+    for (const std::uint32_t cost :
+         {c.load_depth, c.load_interval, c.load_plane, c.load_mask, c.load_edge, c.load_forward,
+          c.load_advance, c.load_order, c.geometry_polygon, c.geometry_skip, c.precomputation_trapeze,
+          c.distribution_span, c.distribution_pass})
         put.whole(cost);
     return hasher.hash();
 }

@@ -372,6 +372,11 @@ TEST(StorageBits, OfRegistersFollowTheMachine) {
     EXPECT_EQ(bits().decisions - plain.decisions, 2 * 48);
     EXPECT_EQ(bits().ages - plain.ages, 2 * 17);
     sized.machine = {};
+    sized.machine.start_within = 1 << 14;  // fits the back-off's register
+    EXPECT_EQ(bits().own_ray, plain.own_ray);
+    sized.machine.start_within = 1 << 20;
+    EXPECT_EQ(bits().own_ray, plain.own_ray + 6);
+    sized.machine = {};
     sized.machine.recovery = Recovery::none;  // nothing is sent again
     EXPECT_EQ(bits().own_ray, plain.own_ray - 17);
     sized.machine = {};
