@@ -52,8 +52,8 @@ bool LoadingUnits::has_room(int most, Cycle cycles, Cycle now, Wakeup& wakeup) c
 
 bool LoadingUnits::closes(Cycle now, Wakeup& wakeup) {
     if (!closing_) return false;
-    if (now < made()) {
-        wakeup.at(made());
+    if (now < ordered()) {
+        wakeup.at(ordered());
         return false;
     }
     closing_ = false;

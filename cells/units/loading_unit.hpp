@@ -51,8 +51,10 @@ class LoadingUnits {
 
     const LoadItem* item() const { return item_; }
     Cycle done() const { return done_; }  ///< first cycle in which the message may move on
-    /// First cycle in which all voxels of the spans kept are made and in order.
-    Cycle made() const { return std::max(ordered_, *std::max_element(made_.begin(), made_.end())); }
+    /// First cycle in which all voxels of the spans kept are made.
+    Cycle made() const { return *std::max_element(made_.begin(), made_.end()); }
+    /// First cycle in which they are in order, too.
+    Cycle ordered() const { return std::max(ordered_, made()); }
     /// Cycles that the units still need for the spans kept, added.
     Cycle to_make(Cycle now) const;
     /// Whether a message makes a voxel in column x.
