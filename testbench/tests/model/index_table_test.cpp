@@ -105,11 +105,9 @@ TEST(IndexTable, ASearchThroughItFindsTheNearestOfAllVoxelsWithFewerTests) {
                 const Arithmetic& arithmetic = context.arithmetic;
                 const auto cells = load_array(scene, settings, arithmetic);
                 for (int i = 0; i < 300; ++i) {
-                    const dvec3 share{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
                     int x = 0;
                     int y = 0;
-                    const Ray ray = walker::ray_at(context, share * scene.frame.cube().high,
-                                                   shapes::sloped_direction(random), x, y);
+                    const Ray ray = walker::any_ray(context, random, x, y);
                     const CellStore& store = cells[std::size_t(y * scene.frame.width + x)];
                     const double t_end = next_crossing(ray, arithmetic).t;
                     const auto wanted = search_all(store, ray, t_end, rung, arithmetic, all);

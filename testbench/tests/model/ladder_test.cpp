@@ -158,11 +158,9 @@ TEST(Ladder, AVisitIsTheSameByAnIndexTableThatStandsApartFromTheVoxels) {
         int hits = 0;
         at_every_rung(scene, [&](const Context& context, const std::vector<CellStore>& cells) {
             for (int i = 0; i < 300; ++i) {
-                const dvec3 share{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
                 int x = 0;
                 int y = 0;
-                const Ray ray = walker::ray_at(context, share * scene.frame.cube().high,
-                                               shapes::sloped_direction(random), x, y);
+                const Ray ray = walker::any_ray(context, random, x, y);
                 const CellStore& store = cells[std::size_t(y * scene.frame.width + x)];
                 std::vector<IndexEntry> lines(1);  // kept if a store has none: null means the store's own
                 lines.insert(lines.end(), store.index.begin(), store.index.end());

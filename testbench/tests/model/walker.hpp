@@ -7,6 +7,7 @@
 
 #include "model/loading/loading.hpp"
 #include "model/tracing/tracing.hpp"
+#include "shapes.hpp"
 
 namespace raycell::walker {
 
@@ -33,6 +34,12 @@ inline Ray ray_at(const Context& context, const dvec3& origin, const dvec3& dire
     ray.fresh = false;
     set_direction(ray, arithmetic.exact() ? direction : arithmetic.normalise(direction), arithmetic);
     return ray;
+}
+
+/// A ray of any direction from any point inside the cube; sets `x` and `y` to its cell.
+inline Ray any_ray(const Context& context, property::Random& random, int& x, int& y) {
+    const dvec3 share{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
+    return ray_at(context, share * context.scene.frame.cube().high, shapes::sloped_direction(random), x, y);
 }
 
 /// The first hit, or nothing if the ray leaves the cube. Throws std::logic_error if it never leaves the

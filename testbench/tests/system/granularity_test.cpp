@@ -86,8 +86,9 @@ TEST(Granularity, DoesNotShowInSyntheticTraffic) {
     }
 }
 
+// The sanitizer's own memory would be measured with that of the cells.
+#ifndef __SANITIZE_ADDRESS__
 TEST(Granularity, OfTilesTakesAFractionOfTheMemoryOfModules) {
-    if (sanitized) GTEST_SKIP() << "the sanitizer's own memory would be measured with that of the cells";
     const Workshop workshop;
     const auto bytes = [&](const Words& granularity) {
         const Json report = workshop.report(
@@ -99,9 +100,10 @@ TEST(Granularity, OfTilesTakesAFractionOfTheMemoryOfModules) {
     EXPECT_GT(bytes({"--granularity", "cell"}), 3 * tile);
     EXPECT_LT(bytes({"--detail", "0..9,0..9"}), 1.2 * tile);
 }
+#endif
 
+#ifndef __SANITIZE_ADDRESS__
 TEST(Granularity, OfModulesIsRefusedWhereTheirMemoryIsNotThere) {
-    SKIP_WITHOUT_LIMITS();
     const Workshop workshop;
     const Finished finished = run_within(8000, workshop, RAYCELL_PROGRAM,
                                          {"render", own_scene("cornell.nff").string(), "--cells", "4096x4096",
@@ -110,6 +112,7 @@ TEST(Granularity, OfModulesIsRefusedWhereTheirMemoryIsNotThere) {
     EXPECT_TRUE(contains(finished.err, "or --granularity tile")) << finished.err;
     EXPECT_LT(finished.megabytes, 100);
 }
+#endif
 
 TEST(Granularity, IsRefusedInContradictionsAndOutsideTheArray) {
     const Workshop workshop;

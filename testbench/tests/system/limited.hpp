@@ -5,12 +5,8 @@
 
 namespace raycell::system_test {
 
-/// Not under the sanitizer, which takes address space beyond every limit.
-#define SKIP_WITHOUT_LIMITS() \
-    if (sanitized)            \
-    GTEST_SKIP() << "the sanitizer's shadow memory takes more address space than any limit allows"
-
-/// Runs a program with at most so many megabytes of address space.
+/// Runs a program with at most so many megabytes of address space. The address sanitizer takes more than any
+/// limit allows, so a test that calls this is not built with it.
 inline Finished run_within(int megabytes, const Workshop& workshop, const std::string& program,
                            const Words& words) {
     const std::string limit = "ulimit -v " + std::to_string(megabytes * 1000) + "; exec \"$0\" \"$@\"";
