@@ -195,20 +195,30 @@ TEST(Ladder, ARayCannotHitThePolygonThatItLeaves) {
     });
 }
 
-TEST(Ladder, EqualDistancesGoToTheLowerId) {
-    CellScene scene = shapes::empty_cube(4, 4, 8, 64);
-    hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
-    hand_made::add_rectangle(scene, 0, {0, 0, 3}, {4, 0, 0}, {0, 4, 0});
-    std::swap(scene.polygons[0], scene.polygons[1]);  // stored the other way round
-    at_every_rung(scene, [](const Context& context, const std::vector<CellStore>& cells) {
-        int x = 0;
-        int y = 0;
-        const Ray ray = walker::ray_at(context, {1.5, 1.5, 0}, {0, 0, 1}, x, y);
-        const auto found = walker::walk(cells, context, ray, x, y);
-        ASSERT_TRUE(found);
-        EXPECT_EQ(found->polygon, 0u);
-    });
+/// Two rectangles at the same depth, stored in both orders, seen from the front and from the back.
+void expect_lower_id(double depth) {
+    for (const bool swapped : {false, true}) {
+        CellScene scene = shapes::empty_cube(4, 4, 8, 64);
+        hand_made::add_rectangle(scene, 0, {0, 0, depth}, {4, 0, 0}, {0, 4, 0});
+        hand_made::add_rectangle(scene, 0, {0, 0, depth}, {4, 0, 0}, {0, 4, 0});
+        if (swapped) std::swap(scene.polygons[0], scene.polygons[1]);
+        at_every_rung(scene, [&](const Context& context, const std::vector<CellStore>& cells) {
+            for (const int way : {1, -1}) {
+                int x = 0;
+                int y = 0;
+                const Ray ray =
+                    walker::ray_at(context, {1.5, 1.5, way > 0 ? 0 : 8}, {0, 0, double(way)}, x, y);
+                const auto found = walker::walk(cells, context, ray, x, y);
+                ASSERT_TRUE(found);
+                EXPECT_EQ(found->polygon, 0u) << "depth " << depth << ", way " << way;
+            }
+        });
+    }
 }
+
+TEST(Ladder, EqualDistancesGoToTheLowerId) { expect_lower_id(3); }
+
+TEST(Ladder, EqualDistancesGoToTheLowerIdAtTheEndOfALevel) { expect_lower_id(3.125 - 1e-6); }
 
 TEST(Ladder, AShadowRayIsBlockedBeforeItsSourceOnly) {
     CellScene scene = shapes::empty_cube(4, 4, 8, 64);
