@@ -33,6 +33,14 @@ Array::Array(sc_core::sc_module_name name, Environment& environment, const Granu
     make_links();
 }
 
+namespace {
+
+/// Makes sure that SystemC finds memory for the names of the next module: its own allocator does not notice
+/// that there is none. The block given back is what the next requests are served from.
+void ensure_memory() { ::operator delete(::operator new(std::size_t(1) << 16)); }
+
+}  // namespace
+
 void Array::make_hosts(const Granularity& granularity) {
     const auto name_at = [](const char* what, int x, int y) {
         return what + ("_" + std::to_string(x)) + "_" + std::to_string(y);
@@ -46,6 +54,7 @@ void Array::make_hosts(const Granularity& granularity) {
     }
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         Cell& cell = cells_[i];
+        ensure_memory();
         if (granularity.own_cells) {
             const std::string name = name_at("own_cell", cell.x(), cell.y());
             if (auto own = granularity.own_cells(name.c_str(), environment_, cell.x(), cell.y())) {

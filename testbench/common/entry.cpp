@@ -81,6 +81,19 @@ std::unique_ptr<char[]> for_message;  ///< memory kept for printing it
     end_without_files(report_failure(no_memory, exit_usage));
 }
 
+/// Called when a library can't pass an exception on: TBB, under Embree, ends this way where no memory is left
+/// for a thread.
+[[noreturn]] void no_way_on() {
+    std::string message = no_memory;
+    try {
+        if (std::current_exception()) std::rethrow_exception(std::current_exception());
+    } catch (const std::exception& error) {
+        if (std::string(error.what()).find("pthread_create") == std::string::npos) message = error.what();
+    } catch (...) {
+    }
+    end_without_files(report_failure(message, exit_usage));
+}
+
 }  // namespace
 
 LaunchedRanks launched_ranks() {
@@ -135,6 +148,7 @@ int run_guarded(const std::string& name, const std::string& smaller, const std::
     no_memory = name + ": out of memory; expected " + smaller;
     for_message = std::make_unique<char[]>(std::size_t(1) << 18);
     std::set_new_handler(out_of_memory);
+    std::set_terminate(no_way_on);
     int code = exit_usage;
     std::string message;
     try {

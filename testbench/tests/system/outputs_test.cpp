@@ -233,6 +233,35 @@ TEST(Memory, ThatRunsOutIsSaidInOneMessage) {
         for (const std::string& name : workshop.results()) fs::remove(workshop.result(name));
     }
 }
+
+// Libraries meet the end of memory in places of their own, each between two limits that lie close together.
+TEST(Memory, ThatRunsOutInALibraryIsSaidTheSameWay) {
+    const Workshop workshop;
+    const Words run = {"render",
+                       own_scene("still_life.nff").string(),
+                       "--cells",
+                       "40x40",
+                       "--granularity",
+                       "cell",
+                       "--max-cycles",
+                       "100",
+                       "-o",
+                       "results/a"};
+    int kilobytes = 20000;
+    while (run_within_kilobytes(kilobytes, workshop, RAYCELL_PROGRAM, {"--help"}).exit_code != 0)
+        kilobytes += 2000;
+    int refused = 0;
+    for (;; kilobytes += 440) {
+        SCOPED_TRACE(std::to_string(kilobytes) + " kB");
+        const Finished finished = run_within_kilobytes(kilobytes, workshop, RAYCELL_PROGRAM, run);
+        if (finished.exit_code == 4) break;  // enough
+        ASSERT_LT(kilobytes, 800000);
+        ++refused;
+        const bool foretold = contains(finished.err, "are free; expected a smaller array");
+        expect_one_message(finished, foretold ? "--cells: " : "out of memory");
+    }
+    EXPECT_GT(refused, 10);
+}
 #endif
 
 }  // namespace
