@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "scenes/emitters.hpp"
 #include "scenes/text_source.hpp"
 
 namespace raycell {
@@ -28,6 +29,7 @@ Scene load_scene(const std::filesystem::path& path, const std::optional<std::fil
         throw InputError(file, 0, "unknown kind of scene file", "a name that ends in .nff or .obj");
     }
     Scene scene = extension == ".nff" ? read_nff(path, diagnostics) : read_obj(path, diagnostics);
+    if (extension == ".obj") add_emitters(scene, diagnostics);
     if (view_file) {
         if (lower_extension(*view_file) == ".obj") {
             throw InputError(printable_path(*view_file), 0, "an OBJ file has no view",

@@ -134,6 +134,7 @@ Source placed_source(const LightSource& source, const Frame& frame, double share
         placed.edge_v = frame.direction_to_cells(source.edge_v) / frame.cell_width;
         if (source.kind != SourceKind::sphere)
             placed.axis = -glm::normalize(glm::cross(placed.edge_u, placed.edge_v));
+        placed.position -= source.before * placed.axis;
         return placed;
     }
     placed.axis = -frame.direction_to_cells(glm::normalize(source.direction));

@@ -22,6 +22,7 @@ struct Material {
     double transmit = 0.0;        ///< T, share of the refracted ray, 0..1
     double ior = 1.0;             ///< index of refraction, > 0 wherever transmit > 0
     bool mirror = true;           ///< false: Ks makes a highlight only (OBJ materials without reflection)
+    dvec3 emission{0, 0, 0};      ///< makes sources of its faces (scenes/emitters.hpp); no cell has it
 };
 
 constexpr std::size_t max_sources = 64;  ///< one bit each in a 64-bit verdict word
@@ -55,6 +56,7 @@ struct LightSource {
     dvec3 edge_u{0, 0, 0};     ///< rectangle, triangle: from the corner to a neighbour
     dvec3 edge_v{0, 0, 0};     ///< to the other one; its front is where u x v points to
     double radius = 0;         ///< sphere: > 0
+    double before = 0;         ///< rectangle, triangle: so far before its own face, cells, so that it lights
 };
 
 /// The viewer of an NFF `v` entity.

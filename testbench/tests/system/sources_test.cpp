@@ -64,5 +64,24 @@ TEST(Sources, MoreShadowRaysThanAWordHasBitsAreRefused) {
     EXPECT_TRUE(contains(refused.err, "wrong.toml:1: 'radius' is missing")) << refused.err;
 }
 
+/// The lamp of the data set's own file, with samples of the machine against many of the truth.
+TEST(Sources, TheCornellBoxIsLitByItsOwnLamp) {
+    SKIP_WITHOUT_SHARED_SCENES();
+    const Workshop workshop;
+    double before = 0;
+    for (const std::string samples : {"4", "16", "64"}) {
+        const Json report = workshop.report(
+            shared_scenes() / "obj/CornellBox-Original.obj",
+            {"--cells", "64x64", "--engine", "untimed", "--truth", "--source-samples", samples});
+        ASSERT_FALSE(report.is_null());
+        const double psnr = report.at("accuracy").at("scene").at("psnr_db");
+        std::printf("%s samples: %.2f dB\n", samples.c_str(), psnr);
+        EXPECT_GT(psnr, before);
+        before = psnr;
+        EXPECT_GT(report.at("rays").at("shadow"), 0);
+    }
+    EXPECT_GE(before, 35);
+}
+
 }  // namespace
 }  // namespace raycell::system_test
