@@ -63,9 +63,10 @@ TEST(Reproduction, ATracedRunFromItsConfigurationIsTheSameRun) {
                                  .string();
     const std::string sources =
         workshop
-            .write("lamp.toml",
-                   "add = true\n[[source]]\nkind = 'sphere'\ncentre = [3, 5, 2]\nradius = 0.7\n"
-                   "[[source]]\nkind = 'directional'\ndirection = [0.3, -1, -0.4]\ncolour = [0.1, 0.2, 0.3]\n")
+            .write(
+                "lamp.toml",
+                "add = true\n[[source]]\nkind = 'sphere'\ncentre = [3, 5, 2]\nradius = 0.7\n"
+                "[[source]]\nkind = 'directional'\ndirection = [0.3, -1, -0.4]\ncolour = [0.1, 0.2, 0.3]\n")
             .string();
     const std::vector<Words> runs = {
         {},
