@@ -30,7 +30,7 @@ void Cell::begin_phase() {
     if (env_.context.settings.shadows == Shadows::memo && env_.phase == Phase::trace) {
         asked_.assign(store_.voxels.size(), 0);
     }
-    injector_.begin_phase(env_.phase == Phase::trace);
+    injector_.begin_phase(env_.phase == Phase::trace, start_of_primary(env_, x_, y_));
 }
 
 Cycle Cell::step(Cycle now) {
@@ -149,7 +149,7 @@ void Cell::test_at(std::size_t place, Cycle now) {
     settle(wait_of(*packet, place), packet->ray.id, now);
     packet->wait.cause = Stall::none;
     const std::uint32_t cycles = unit_cycles(
-        TraversalUnits::test(*packet, {store_, runs_, env_.context, env_.classes, x_, y_}, env_.costs()));
+        TraversalUnits::test(*packet, {store_, index_, env_.context, env_.classes, x_, y_}, env_.costs()));
     meter_.tested(env_.meters.counters, packet->visit, cycles);
     traversal_.start(*packet, std::uint32_t(place), now + cycles);
     record(now, CellEvent::test, std::uint32_t(packet->ray.id), packet->ray.id,

@@ -53,9 +53,9 @@ class alignas(64) Cell final : public Client {
     /// there is none.
     Cycle step(Cycle now);
 
-    /// Sets the depth runs of the store's voxels, one per voxel; the voxels must not change any more. `runs`
-    /// must outlive the cell.
-    void set_runs(const DepthRun* runs) { runs_ = {runs, std::uint32_t(store_.voxels.size())}; }
+    /// Sets where a copy of the store's index table lies; the voxels must not change any more. `lines` must
+    /// outlive the cell.
+    void set_index(const IndexEntry* lines) { index_ = {lines, std::uint32_t(store_.index.size())}; }
 
     const CellStore& store() const { return store_; }
     CellStore& store() { return store_; }
@@ -245,7 +245,7 @@ class alignas(64) Cell final : public Client {
     bool moved_ : 1;                  ///< this cycle: a message moved, came home or was shaded
     bool blocked_ : 1;                ///< this cycle: a message could not move
 
-    DepthRuns runs_;            ///< of the voxels, set after loading
+    IndexTable index_;          ///< the store's, set after loading
     Cycle store_port_ = never;  ///< cycle in which the ray store's one write port was used
     TimeOut time_out_;
     Router router_;

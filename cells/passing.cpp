@@ -31,6 +31,11 @@ void end_ray(RayPacket& packet, Environment& environment, CellMeter& meter) {
     environment.pools.rays.give_back(&packet);
 }
 
+Cycle start_of_primary(const Environment& environment, int x, int y) {
+    const auto pixel = std::uint64_t(y) * std::uint64_t(environment.width()) + std::uint64_t(x);
+    return environment.phase_start + 1 + Retry::first_start(environment.machine, ray_id(pixel, 0));
+}
+
 Ray begin_primary(Injector& injector, Environment& environment, int x, int y) {
     if (injector.primary_sent()) {
         ++environment.meters.counters.rays.primary;
@@ -98,11 +103,11 @@ std::optional<LoadItem::Kind> pass_load(LoadingUnits& unit, LinkIn& from, LinkOu
     const bool ends = LoadingUnits::ends_at(*item, x, environment.width());
     if (!ends && !east->can_send(0, wakeup.next)) return std::nullopt;
     meter.load_passed(environment.meters.counters, ends);
-    LoadingUnits::take(*item, x, store, environment.context);
+    const std::uint32_t lines = LoadingUnits::take(*item, x, store, environment.context);
     from.pop(0);
     unit.finish();
     if (makes) {
-        unit.keep(making, now);
+        unit.keep(making, lines * environment.costs().load_order, now);
         meter.kept(making);
         count_kept(environment, store, unit.kept(making, now), unit.count());
         environment.scheduler.sample_at(unit.made(), unit.made());

@@ -193,21 +193,21 @@ void Array::end_of_elaboration() {
     }
 }
 
-/// After loading: puts the depth runs of all cells' voxels into one array.
-void Array::make_runs() {
+/// After loading: puts the index tables of all cells into one array.
+void Array::make_index() {
     std::size_t count = 0;
-    for (const Cell& cell : cells_) count += cell.store().voxels.size();
-    if (count == 0 || runs_.size() > 0) return;
-    runs_.reserve(count);
+    for (const Cell& cell : cells_) count += cell.store().index.size();
+    if (count == 0 || index_.size() > 0) return;
+    index_.reserve(count);
     for (Cell& cell : cells_) {
-        const DepthRun* first = runs_.begin() + runs_.size();
-        for (const Voxel& voxel : cell.store().voxels) runs_.emplace_back(DepthRun{voxel.near, voxel.far});
-        cell.set_runs(first);
+        const IndexEntry* first = index_.begin() + index_.size();
+        for (const IndexEntry& line : cell.store().index) index_.emplace_back(line);
+        cell.set_index(first);
     }
 }
 
 void Array::begin_phase() {
-    if (environment_.phase != Phase::load) make_runs();
+    if (environment_.phase != Phase::load) make_index();
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         if (sockets_.count(i) > 0) {
             sockets_[i]->begin_phase();

@@ -89,7 +89,7 @@ class Array : public sc_core::sc_module {
     void bind_in(int x, int y, Side side, Link& link);
     void bind_out(int x, int y, Side side, Link& link);
     void end_of_elaboration() override;
-    void make_runs();
+    void make_index();
 
     Environment& environment_;
     const Prefetch prefetch_;
@@ -98,7 +98,7 @@ class Array : public sc_core::sc_module {
     std::map<std::size_t, std::unique_ptr<CellModule>> modules_;  ///< by the cell's index
     std::map<std::size_t, std::unique_ptr<CellSocket>> sockets_;  ///< by the cell's index
     StableArray<Link> links_;
-    StableArray<DepthRun> runs_;       ///< of all cells' voxels, row by row
+    StableArray<IndexEntry> index_;    ///< the index tables of all cells, row by row
     std::vector<std::uint32_t> ways_;  ///< by link: index of its sink · 4 + side of its source
 };
 

@@ -70,9 +70,9 @@ void Prefetch::links(const Cell& cell) {
     // A ray will be tested: prefetches the depths with which it is compared.
     if (cell.occupied() & ~cell.decided_ & ~cell.bits_in_test()) {
         constexpr std::uint32_t most = 32;
-        constexpr std::uint32_t in_line = line / sizeof(DepthRun);
-        for (std::uint32_t i = 0; i < std::min(cell.runs_.count, most); i += in_line)
-            fetch_line(cell.runs_.first + i);
+        constexpr std::uint32_t in_line = line / sizeof(IndexEntry);
+        for (std::uint32_t i = 0; i < std::min(cell.index_.count, most); i += in_line)
+            fetch_line(cell.index_.first + i);
         if (cell.env_.context.traffic) fetch_line(&cell.store_);
     }
 }

@@ -13,9 +13,10 @@ namespace raycell {
 
 class Injector {
   public:
-    /// Begins a phase; `traces`: the pixel's primary ray must be sent in it.
-    void begin_phase(bool traces) {
+    /// Begins a phase; `traces`: the pixel's primary ray must be sent in it, from cycle `start` on.
+    void begin_phase(bool traces, Cycle start = 0) {
         primary_to_send_ = traces;
+        retry_.wait_until(start);
         precast_next_ = 0;
     }
 

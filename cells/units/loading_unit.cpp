@@ -29,8 +29,9 @@ int LoadingUnits::kept(Cycle cycles, Cycle now) const {
     return int(sum);
 }
 
-void LoadingUnits::keep(Cycle cycles, Cycle now) {
+void LoadingUnits::keep(Cycle cycles, Cycle ordering, Cycle now) {
     made_[turn_] = std::max(made_[turn_], now) + cycles;
+    if (ordering > 0) ordered_ = std::max(ordered_, made_[turn_]) + ordering;
     turn_ = std::uint8_t(turn_ + 1 == count_ ? 0 : turn_ + 1);
 }
 
@@ -63,11 +64,13 @@ bool LoadingUnits::ends_at(const LoadItem& item, int x, int width) {
     return item.kind == LoadItem::Kind::span ? item.span.last == x : x + 1 == width;
 }
 
-void LoadingUnits::take(LoadItem& item, int x, CellStore& store, const Context& context) {
+std::uint32_t LoadingUnits::take(LoadItem& item, int x, CellStore& store, const Context& context) {
     // Hardware latches broadcast messages in every cell; the model keeps one copy for all cells.
-    if (!makes_voxel(item, x)) return;
-    store_voxel(store, item.span, context.settings, context.scene.frame.level(), context.arithmetic);
+    if (!makes_voxel(item, x)) return 0;
+    const std::uint32_t lines =
+        store_voxel(store, item.span, context.settings, context.scene.frame.level(), context.arithmetic);
     if (item.span.last != x) advance(item.span, context.arithmetic);
+    return lines;
 }
 
 }  // namespace raycell

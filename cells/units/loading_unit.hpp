@@ -33,10 +33,13 @@ class LoadingUnits {
     int count() const { return count_; }
     /// Keeps a span: a unit makes its voxel after those that it has taken before. All voxels take equally
     /// long, so the units in turn is the same as the first that is free. The model stores the voxel at once,
-    /// because nothing reads it before loading is over: it only keeps until when each unit is at work.
-    void keep(Cycle cycles, Cycle now);
+    /// because nothing reads it before loading is over: it only keeps until when each unit is at work. The
+    /// traversal unit, idle while loading, puts one voxel after the other in order: `ordering` cycles for
+    /// this one, once it is made.
+    void keep(Cycle cycles, Cycle ordering, Cycle now);
     /// Stores the voxel that the message makes in column x, if any, and advances a span to the next column.
-    static void take(LoadItem& item, int x, CellStore& store, const Context& context);
+    /// Returns the lines of the index table that were read to put it in order.
+    static std::uint32_t take(LoadItem& item, int x, CellStore& store, const Context& context);
     /// Whether a load message ends in the cell of column x; to be asked before take().
     static bool ends_at(const LoadItem& item, int x, int width);
     /// The message has moved on or ended.
@@ -48,8 +51,8 @@ class LoadingUnits {
 
     const LoadItem* item() const { return item_; }
     Cycle done() const { return done_; }  ///< first cycle in which the message may move on
-    /// First cycle in which all voxels of the spans kept are made.
-    Cycle made() const { return *std::max_element(made_.begin(), made_.end()); }
+    /// First cycle in which all voxels of the spans kept are made and in order.
+    Cycle made() const { return std::max(ordered_, *std::max_element(made_.begin(), made_.end())); }
     /// Cycles that the units still need for the spans kept, added.
     Cycle to_make(Cycle now) const;
     /// Whether a message makes a voxel in column x.
@@ -61,6 +64,7 @@ class LoadingUnits {
     LoadItem* item_ = nullptr;
     Cycle done_ = 0;
     std::array<Cycle, most_units> made_{};  ///< per unit: when the last of its voxels is made
+    Cycle ordered_ = 0;                     ///< when the last voxel is in its place in the index table
     std::uint8_t turn_ = 0;                 ///< the unit that takes the next span
     std::uint8_t count_;
     bool closing_ = false;

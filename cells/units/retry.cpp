@@ -20,6 +20,11 @@ Cycle Retry::backoff(const MachineSettings& machine, std::uint64_t ray, unsigned
     return base + jitter(machine.seed, ray, attempt) % base;
 }
 
+Cycle Retry::first_start(const MachineSettings& machine, std::uint64_t ray) {
+    // No attempt has this number.
+    return machine.start_within > 0 ? jitter(machine.seed, ray, most_attempts + 1) % machine.start_within : 0;
+}
+
 void Retry::postponed(const MachineSettings& machine, std::uint64_t ray, Cycle now) {
     at_ = now + backoff(machine, ray, attempts_);
     attempts_ = std::uint8_t(std::min<int>(attempts_ + 1, most_attempts));

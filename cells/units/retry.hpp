@@ -16,6 +16,11 @@ class Retry {
     /// the seed, the ray and the attempt.
     static Cycle backoff(const MachineSettings& machine, std::uint64_t ray, unsigned attempt);
 
+    /// When a primary ray is sent for the first time, cycles after the phase's beginning: a hash of the seed
+    /// and the ray, below machine.start_within.
+    static Cycle first_start(const MachineSettings& machine, std::uint64_t ray);
+
+    void wait_until(Cycle at) { at_ = at; }
     void postponed(const MachineSettings& machine, std::uint64_t ray, Cycle now);
     Cycle at() const { return at_; }  ///< first cycle in which the ray may be sent again
     unsigned attempts() const { return attempts_; }

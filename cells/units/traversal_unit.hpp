@@ -20,7 +20,7 @@ class TraversalUnits {
     /// The inputs that all tests of a cell share.
     struct Setting {
         const CellStore& store;
-        const DepthRuns& runs;
+        const IndexTable& index;
         const Context& context;
         const BufferClasses& classes;
         int x;

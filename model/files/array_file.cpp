@@ -150,6 +150,7 @@ CellStore get_cell(Reader& reader) {
     const std::size_t intensities = reader.count(most_things);
     // Grows one element at a time: a damaged count must not ask for memory that the file can't fill.
     for (std::size_t i = 0; i < voxels; ++i) fields_of_voxel(get, cell.voxels.emplace_back());
+    make_index(cell);
     for (std::size_t i = 0; i < edges; ++i) fields_of_edge(get, cell.edges.emplace_back());
     for (std::size_t i = 0; i < intensities; ++i) get.vector(cell.intensities.emplace_back());
     return cell;
@@ -202,9 +203,10 @@ std::uint64_t loading_timing(const MachineSettings& machine) {
     put.whole(machine.feed_bits), put.whole(machine.feed_lanes), put.whole(machine.load_queue);
     put.whole(machine.loading_units);
     const CostTable& c = machine.costs;
-    for (const std::uint32_t cost : {c.load_depth, c.load_interval, c.load_plane, c.load_mask, c.load_edge,
-                                     c.load_forward, c.load_advance, c.geometry_polygon, c.geometry_skip,
-                                     c.precomputation_trapeze, c.distribution_span, c.distribution_pass})
+    for (const std::uint32_t cost :
+         {c.load_depth, c.load_interval, c.load_plane, c.load_mask, c.load_edge, c.load_forward,
+          c.load_advance, c.load_order, c.geometry_polygon, c.geometry_skip, c.precomputation_trapeze,
+          c.distribution_span, c.distribution_pass})
         put.whole(cost);
     return hasher.hash();
 }

@@ -202,10 +202,10 @@ void add_piece(Voxel& voxel, const Made& piece, CellStore& store, const Arithmet
 
 }  // namespace
 
-bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level,
-                 const Arithmetic& arithmetic) {
+std::uint32_t store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level,
+                          const Arithmetic& arithmetic) {
     const std::optional<Made> made = make_voxel(span, settings, level, arithmetic);
-    if (!made) return false;
+    if (!made) return 0;
     // The pieces of one polygon arrive one after the other. Mask voxels are not merged: each mask has its own
     // window.
     const bool mergeable = settings.hit != HitTest::mask;
@@ -216,13 +216,13 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
         move_base(before, store, arithmetic);
         set_functions(before, span, settings, arithmetic);
         if (settings.hit == HitTest::edge && before.pieces > 0) add_piece(before, *made, store, arithmetic);
-        return true;
+        return put_in_order(store.index, std::uint32_t(store.voxels.size() - 1), before.near, before.far);
     }
     if (settings.voxel_capacity > 0 && store.voxels.size() >= std::size_t(settings.voxel_capacity)) {
         // A polygon's next piece would have joined the voxel that already did not fit.
         if (!mergeable || store.last_overflowed != span.polygon) ++store.overflowed;
         store.last_overflowed = span.polygon;
-        return false;
+        return 0;
     }
     Voxel voxel = made->voxel;
     set_functions(voxel, span, settings, arithmetic);
@@ -235,7 +235,13 @@ bool store_voxel(CellStore& store, const Span& span, const PictureSettings& sett
     store.voxels.push_back(voxel);
     if (settings.display == Display::gouraud)
         store.intensities.push_back(arithmetic.hold(arithmetic.formats().intensity, span.intensity));
-    return true;
+    return put_in_order(store.index, std::uint32_t(store.voxels.size() - 1), voxel.near, voxel.far);
+}
+
+void make_index(CellStore& store) {
+    store.index.clear();
+    for (const Voxel& voxel : store.voxels)
+        put_in_order(store.index, std::uint32_t(store.index.size()), voxel.near, voxel.far);
 }
 
 void StorageCounts::add(const StorageCounts& other) {
@@ -274,6 +280,8 @@ VoxelBits voxel_bits(const PictureSettings& settings, const Formats& formats, st
     bits.base =
         field::polygon_id + feature_bits(formats) + level_bits + 3 * word + 2 * word + field::axis + 1;
     if (settings.hit != HitTest::depth) bits.base += level_bits;
+    // Its line of the index table: its number, and how far the voxels up to it reach.
+    bits.base += field::voxel_index + level_bits;
     if (settings.hit >= HitTest::plane) bits.base += word;              // its offset
     if (settings.hit == HitTest::mask) bits.base += 64 + 4 * 5;         // coverage and its window
     if (settings.hit == HitTest::edge) bits.base += field::edge_count;  // how many edges follow

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/loading/coverage.hpp"
+#include "model/loading/index_table.hpp"
 #include "model/loading/span.hpp"
 #include "model/settings/settings.hpp"
 
@@ -35,22 +36,10 @@ struct Voxel {
     double area = 0;       ///< of the largest piece, in the projection; only while loading
 };
 
-/// Depth range of a voxel, which a ray is compared with first. Stored apart from the voxel, so that the
-/// ranges of a cell are contiguous in memory.
-struct DepthRun {
-    double near = 0;
-    double far = 0;
-};
-/// The depth runs of all voxels of a cell, as its comparators hold them; if null, they are read from the
-/// voxels.
-struct DepthRuns {
-    const DepthRun* first = nullptr;
-    std::uint32_t count = 0;
-};
-
 /// What one cell holds after loading.
 struct CellStore {
-    std::vector<Voxel> voxels;
+    std::vector<Voxel> voxels;                   ///< in the order in which they came
+    std::vector<IndexEntry> index;               ///< all of them, in order of depth
     std::vector<EdgeFunction> edges;             ///< only at rung `edge`
     std::vector<dvec3> intensities;              ///< per voxel, only for --display gouraud
     std::vector<std::uint64_t> lit;              ///< per voxel, a bit per source (precast, memo)
@@ -60,10 +49,14 @@ struct CellStore {
 };
 
 /// Makes the voxel of the span's current cell and stores it, or (except at rung `mask`) adds it to the voxel
-/// that the same polygon already has there. Returns false if the polygon does not touch the cell (at rung
-/// `depth`: does not cover its centre), or if the store is full; then `overflowed` counts it.
-bool store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level,
-                 const Arithmetic& arithmetic);
+/// that the same polygon already has there; puts it in the index table, and returns how many of its lines
+/// that read (put_in_order()). 0 if the polygon does not touch the cell (at rung `depth`: does not cover its
+/// centre), or if the store is full; then `overflowed` counts it.
+std::uint32_t store_voxel(CellStore& store, const Span& span, const PictureSettings& settings, double level,
+                          const Arithmetic& arithmetic);
+
+/// Makes the index table of voxels that are stored already.
+void make_index(CellStore& store);
 
 /// Bits of one voxel without its edges, and bits of one edge; docs/reference/cell.md has the table.
 struct VoxelBits {

@@ -29,12 +29,21 @@ int decision_bits(const Formats& formats) {
     return 2 + 3 + 2 + 1 + 1 + field::voxel_index + formats.distance.bits();
 }
 
-/// Bits of attempts and back-off. The longest back-off is the shortest, doubled six times and at most once
-/// more by the jitter.
+/// Bits of a back-off. The longest is the shortest, doubled six times and at most once more by the jitter.
+int backoff_bits(const MachineSettings& machine) {
+    return bits_for((std::int64_t(machine.costs.backoff) << 7) + 1);
+}
+
+/// Bits of attempts and back-off.
 int retry_bits(const MachineSettings& machine) {
-    if (machine.recovery != Recovery::postpone) return 0;
     constexpr int attempts = 3;
-    return attempts + bits_for((std::int64_t(machine.costs.backoff) << 7) + 1);
+    return machine.recovery == Recovery::postpone ? attempts + backoff_bits(machine) : 0;
+}
+
+/// Bits that the wait for the first start takes beyond the register of the back-off.
+int start_bits(const MachineSettings& machine) {
+    const int there = machine.recovery == Recovery::postpone ? backoff_bits(machine) : 0;
+    return std::max(0, bits_for(std::int64_t(machine.start_within)) - there);
 }
 
 /// Home, slot and child: where a ray's answer goes.
@@ -77,13 +86,14 @@ SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machin
 namespace {
 
 /// Bits of a traversal unit's registers: nearest hit so far, crossing, the ray's depth run in the cell,
-/// counters over voxels and edges, places of the ray and of the next round's beginning, a point, a sum.
+/// the line of the index table, its voxel, a counter over edges, places of the ray and of the next round's
+/// beginning, a point, a sum.
 int traversal_bits(const MachineSettings& machine, const Formats& formats, int ray_inputs) {
     const int distance = formats.distance.bits();
     const int nearest = 1 + distance + field::voxel_index;
     const int crossing = distance + 2;
     const int run = 2 * formats.depth_word_bits();
-    const int counters = field::voxel_index + field::edge_count;
+    const int counters = 2 * field::voxel_index + field::edge_count;
     const int places = 2 * bits_for(ray_inputs + 1 + machine.ray_store);
     const int point = 2 * formats.word_bits + formats.depth_word_bits();
     return nearest + crossing + run + counters + places + point + formats.accumulator.bits();
@@ -128,6 +138,7 @@ RegisterBits register_bits(const PictureSettings& picture, const MachineSettings
     });
     const bool precast = picture.shadows == Shadows::precast;
     bits.own_ray = sent_ray_bits(picture, messages, sources.sources() > 0, false) + 2 + retry_bits(machine) +
+                   start_bits(machine) +
                    (precast ? field::voxel_index + bits_for(std::int64_t(sources.lights)) : 0);
     bits.decisions = (ray_inputs + 1) * decision_bits(formats);
     bits.ages += 2 * age;

@@ -29,8 +29,14 @@ MicroProgram walk_program(const MicroSetting& setting, double depth);
 /// (of the crossing), axial (1: it has none). Out: t, x to z, left and reach as the walk's.
 MicroProgram leave_program(const MicroSetting& setting, double depth);
 
-/// Whether a voxel's depth run meets the ray's. In: near, far, low, high. Out: meets (0 or 1).
-MicroProgram run_program(const MicroSetting& setting);
+/// Whether a voxel's depth run meets that of a ray that goes to the back, or (`outwards`) to the front. In:
+/// near, far, low, high; outwards also most (of the voxel's line of the index table). Out: meets (0 or 1; 2:
+/// neither this one does nor any after it).
+MicroProgram run_program(const MicroSetting& setting, bool outwards);
+
+/// Whether a voxel goes before a line of the index table, which then moves up by one. In: near, far (the
+/// voxel's), "line near", most (of the line). Out: before (0 or 1), most (of the line where it stands now).
+MicroProgram order_program(const MicroSetting& setting);
 
 /// Where a ray enters a voxel's run: hit_voxel() at rungs `depth` and `interval`. In: z, dz, z1 (the depth at
 /// the cell's side), near, far, end (the ray's distance to that side). Out: hit (0 or 1), t.

@@ -164,23 +164,53 @@ MicroProgram leave_program(const MicroSetting& setting, double depth) {
     return writer.write_leave(operators);
 }
 
-MicroProgram run_program(const MicroSetting& setting) {
+MicroProgram run_program(const MicroSetting& setting, bool outwards) {
     const Format depth = setting.formats().depth;
-    Assembler a("run", setting.datapath, setting.numbers.rounding);
+    Assembler a(outwards ? "run outwards" : "run", setting.datapath, setting.numbers.rounding);
     const auto reg = [&](const char* name) { return a.reg(name, depth.bits() + 1, depth.fraction_bits()); };
     const RegisterIndex near = reg("near");
     const RegisterIndex far = reg("far");
     const RegisterIndex low = reg("low");
     const RegisterIndex high = reg("high");
-    const RegisterIndex meets = a.reg("meets", 2, 0);
+    const RegisterIndex most = outwards ? reg("most") : Assembler::none;
+    const RegisterIndex meets = a.reg("meets", 3, 0);
     const RegisterIndex no = a.constant("0", 0, 2, 0);
     const RegisterIndex yes = a.constant("1", 1, 2, 0);
-    a.jump_less(high, near, "misses");
-    a.jump_less(far, low, "misses");
+    const RegisterIndex none = a.constant("2", 2, 3, 0);
+    a.jump_less(high, near, outwards ? "misses" : "none");
+    a.jump_less(far, low, outwards ? "others" : "misses");
     a.move(meets, yes);
     a.end();
+    if (outwards) {
+        a.label("others");
+        a.jump_less(most, low, "none");
+    }
     a.label("misses");
     a.move(meets, no);
+    a.end();
+    a.label("none");
+    a.move(meets, none);
+    a.end();
+    return a.finish();
+}
+
+MicroProgram order_program(const MicroSetting& setting) {
+    const Format depth = setting.formats().depth;
+    Assembler a("order", setting.datapath, setting.numbers.rounding);
+    const auto reg = [&](const char* name) { return a.reg(name, depth.bits() + 1, depth.fraction_bits()); };
+    const RegisterIndex near = reg("near");
+    const RegisterIndex far = reg("far");
+    const RegisterIndex line_near = reg("line near");
+    const RegisterIndex most = reg("most");
+    const RegisterIndex before = a.reg("before", 2, 0);
+    const RegisterIndex no = a.constant("0", 0, 2, 0);
+    const RegisterIndex yes = a.constant("1", 1, 2, 0);
+    a.jump_less(near, line_near, "before");
+    a.move(before, no);
+    a.end();
+    a.label("before");
+    a.most(most, most, far);
+    a.move(before, yes);
     a.end();
     return a.finish();
 }

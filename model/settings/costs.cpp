@@ -62,6 +62,7 @@ constexpr Row rows[] = {
     {"load_plane", &CostTable::load_plane, {1919, 1791, 1761, 12}, true},
     {"load_mask", &CostTable::load_mask, {3164, 2890, 2841, 12}, true},
     {"load_edge", &CostTable::load_edge, {2089, 1922, 1886, 12}, true},
+    {"load_order", &CostTable::load_order, {3, 3, 3, 1}, true},
     {"load_advance", &CostTable::load_advance, {7, 7, 7, 1}, true},
     {"load_forward", &CostTable::load_forward, {4, 4, 4, 1}, true},
     {"geometry_polygon", &CostTable::geometry_polygon, {40, 40, 40, 40}, false},

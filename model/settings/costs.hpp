@@ -88,6 +88,7 @@ struct CostTable {
     std::uint32_t load_plane;
     std::uint32_t load_mask;
     std::uint32_t load_edge;
+    std::uint32_t load_order;    ///< a line of the index table that a voxel passes on its way to its place
     std::uint32_t load_advance;  ///< moves a span on to the next cell, beside the making of its voxel
     std::uint32_t load_forward;  ///< a cell latches or only passes a load message
     std::uint32_t geometry_polygon;

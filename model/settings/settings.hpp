@@ -86,13 +86,16 @@ struct MachineSettings {
     int loading_units = 2;
     /// Units of a cell that test rays, each one at a time, 1..most_units.
     int traversal_units = 2;
+    /// Cycles of the trace over which the primary rays' first starts are spread, by a hash of seed and pixel;
+    /// 0: all start at once.
+    std::uint32_t start_within = 0;
     int feed_lanes = 16;  ///< ways from geometry to the rows, >= 1; no more than there are rows are used
     int feed_bits = 128;  ///< bits that cross a link of the feed per cycle, >= 1
     double clock_mhz = 20;
     std::int64_t max_cycles = 0;     ///< 0: no limit
     int exterior_processors = 4096;  ///< >= 1
     int exterior_latency = 200;      ///< cycles per ray handed to an exterior processor, >= 1
-    std::uint64_t seed = 1;          ///< of the back-off's jitter and of random stalls
+    std::uint64_t seed = 1;          ///< of back-offs, starts and random stalls
     bool wire_check = false;         ///< rays and answers are packed and unpacked at every link
     /// Probability that a transfer over a link, or an operation of a unit, takes one more cycle; tried again
     /// after each.

@@ -130,28 +130,66 @@ std::optional<double> hit_voxel(const CellStore& store, const Voxel& voxel, cons
 
 namespace {
 
-/// Whether a hit replaces the kept one. Voxels come in the order of their polygons, so one comparison is
-/// enough: a later hit must be nearer by more than a tie.
+/// Whether a hit replaces the kept one: of two within a tie, that of the lower polygon id stays.
 bool precedes(double t, std::uint32_t polygon, double kept_t, std::uint32_t kept_polygon, double tie) {
     return polygon < kept_polygon ? t <= kept_t + tie : t < kept_t - tie;
 }
+
+/// Goes through the index table in the ray's direction and gives the voxels whose runs meet the ray's, up to
+/// the first that can't, nor any after it.
+class DepthSearch {
+  public:
+    DepthSearch(const Ray& ray, double t_end, const IndexTable& table, const Arithmetic& arithmetic,
+                Comparisons* comparisons)
+        : table_(table),
+          comparisons_(comparisons),
+          inwards_(!(ray.direction.z < 0)),
+          next_(inwards_ ? 0 : table.count) {
+        const double z1 = depth_at(ray, t_end, arithmetic);
+        low_ = std::min(ray.position.z, z1) - arithmetic.hair();
+        high_ = std::max(ray.position.z, z1) + arithmetic.hair();
+    }
+
+    /// Null if there is none.
+    const IndexEntry* next() {
+        while (inwards_ ? next_ < table_.count : next_ > 0) {
+            const IndexEntry& line = table_.first[inwards_ ? next_++ : --next_];
+            if (comparisons_) ++comparisons_->runs;
+            if (inwards_ ? line.near > high_ : line.most < low_) return nullptr;
+            if (line.far >= low_ && line.near <= high_) return &line;
+        }
+        return nullptr;
+    }
+
+    /// The nearest hit so far is at depth z: nothing beyond it counts, but what ties with it.
+    void end_at(double z, double tie) {
+        if (inwards_) {
+            high_ = std::min(high_, z + tie);
+        } else {
+            low_ = std::max(low_, z - tie);
+        }
+    }
+
+  private:
+    const IndexTable& table_;
+    Comparisons* comparisons_;
+    bool inwards_;
+    std::uint32_t next_;
+    double low_, high_;
+};
 
 }  // namespace
 
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
                                        const Arithmetic& arithmetic, Comparisons* comparisons,
-                                       const DepthRuns& runs) {
+                                       const IndexTable& index) {
     std::optional<CellHit> best;
-    const std::uint32_t run_count = runs.first ? runs.count : std::uint32_t(store.voxels.size());
-    if (comparisons) comparisons->runs += run_count;
-    if (run_count == 0) return best;
-    const double z1 = depth_at(ray, t_end, arithmetic);
-    const double z_low = std::min(ray.position.z, z1) - arithmetic.hair();
-    const double z_high = std::max(ray.position.z, z1) + arithmetic.hair();
-    for (std::uint32_t i = 0; i < run_count; ++i) {
-        if (runs.first && (runs.first[i].near > z_high || runs.first[i].far < z_low)) continue;
-        const Voxel& voxel = store.voxels[i];
-        if (!runs.first && (voxel.near > z_high || voxel.far < z_low)) continue;
+    const IndexTable own{store.index.data(), std::uint32_t(store.index.size())};
+    const IndexTable& table = index.first ? index : own;
+    if (table.count == 0) return best;
+    DepthSearch search(ray, t_end, table, arithmetic, comparisons);
+    while (const IndexEntry* line = search.next()) {
+        const Voxel& voxel = store.voxels[line->voxel];
         if (voxel.polygon == ray.leaves) continue;
         if (comparisons) {
             ++comparisons->tests;
@@ -162,7 +200,8 @@ std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, d
         const bool tied = best && std::abs(*t - best->t) <= arithmetic.tie();
         if (!best ||
             precedes(*t, voxel.polygon, best->t, store.voxels[best->voxel].polygon, arithmetic.tie())) {
-            best = CellHit{*t, i};
+            best = CellHit{*t, line->voxel};
+            search.end_at(depth_at(ray, *t, arithmetic), arithmetic.tie());
         }
         best->tied = best->tied || tied;
     }

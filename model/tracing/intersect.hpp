@@ -28,10 +28,12 @@ struct Comparisons {
 };
 
 /// The nearest hit in a cell; within Arithmetic::tie(), the one with the lowest polygon id. Any hit would do
-/// for a shadow ray, but the cell has one comparison unit for all rays. The store is read only where the
-/// ray's own run meets one of `runs`.
+/// for a shadow ray, but the cell has one comparison unit for all rays. Voxels are looked at in order of
+/// depth, in the ray's direction, up to the first that lies beyond its end or its nearest hit, and all after
+/// it. `index`: the store's index table, where it is kept elsewhere; the voxels are read only
+/// where the ray's own run meets one of its lines.
 std::optional<CellHit> nearest_in_cell(const CellStore& store, const Ray& ray, double t_end, HitTest test,
                                        const Arithmetic& arithmetic, Comparisons* comparisons = nullptr,
-                                       const DepthRuns& runs = {});
+                                       const IndexTable& index = {});
 
 }  // namespace raycell

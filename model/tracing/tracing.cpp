@@ -146,7 +146,7 @@ Context::Context(const CellScene& placed, const PictureSettings& picture_setting
     normal_offset = arithmetic.hold(f.unit, settings.normal_offset < 0 ? suitable : settings.normal_offset);
 }
 
-Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context, const DepthRuns& runs) {
+Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context, const IndexTable& index) {
     if (context.traffic) return context.traffic->visit_cell(store, ray, context);
     const Arithmetic& arithmetic = context.arithmetic;
     Visit visit;
@@ -171,7 +171,7 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
         visit.event = Visit::Event::reaches_source;
     }
     const auto hit =
-        nearest_in_cell(store, ray, t_end, context.settings.hit, arithmetic, &visit.comparisons, runs);
+        nearest_in_cell(store, ray, t_end, context.settings.hit, arithmetic, &visit.comparisons, index);
     // A surface at the source itself does not hide it.
     if (hit && !(is_shadow(ray.kind) && hit->t >= ray.reach - arithmetic.hair())) {
         visit.event = Visit::Event::hit;

@@ -50,7 +50,8 @@ struct Visit {
     Event event = Event::forward;
     bool leaves = false;  ///< it would leave the cube before the cell's side: that took a division
 };
-Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context, const DepthRuns& runs = {});
+Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
+                 const IndexTable& index = {});
 
 /// Cycles that the traversal unit needs for a visit.
 std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs);

@@ -314,6 +314,8 @@ void add_link_options(OptionTable& table, MachineSettings& m) {
                  "units of a cell that make voxels while the array is loaded, each one at a time");
     table.number("traversal-units", m.traversal_units, 1, most_units,
                  "units of a cell that test rays, each one at a time");
+    table.number("start-within", m.start_within, 0U, 1U << 24U,
+                 "primary rays start spread over so many cycles of the trace; 0: all at once");
     table.number("load-queue", m.load_queue, 0, 65535,
                  "spans that a cell keeps until their voxels are made; 0: no limit");
     table.number("feed-bits", m.feed_bits, 1, 4096,

@@ -249,6 +249,7 @@ void read_voxel(const Words& words, const std::vector<std::string>& tokens, Cell
         store.edges.push_back(edge);
     }
     reader.finish();
+    put_in_order(store.index, std::uint32_t(store.voxels.size()), voxel.near, voxel.far);
     store.voxels.push_back(voxel);
 }
 

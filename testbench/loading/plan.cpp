@@ -88,6 +88,8 @@ class Planner {
         spans_end_.resize(cells);
         cycles_end_.resize(cells);
         row_cycles_.resize(std::size_t(layout.height));
+        stores_.resize(std::size_t(layout.width) * std::size_t(layout.height));
+        plan_.lines.resize(stores_.size());
     }
 
     LoadPlan run() {
@@ -303,6 +305,12 @@ class Planner {
         ++spans_end_[row + std::size_t(span->last) + 1];
         cycles_end_[row + std::size_t(span->last) + 1] += on_link;
         row_cycles_[std::size_t(y)] += on_link;
+        for (Span part = *span;; advance(part, arithmetic_)) {
+            const std::size_t cell = std::size_t(y) * std::size_t(plan_.layout.width) + std::size_t(part.x);
+            plan_.lines[cell].push_back(
+                store_voxel(stores_[cell], part, picture_, scene_.frame.level(), arithmetic_));
+            if (part.x == part.last) break;
+        }
         // It leaves a cell without waiting for its voxel there, so only the last one counts.
         way += std::uint64_t(span->last + 1) * on_link + std::uint64_t(span->x) * costs_.load_forward +
                std::uint64_t(span->last - span->x + 1) * costs_.load_advance + plan_.voxel_cycles;
@@ -346,6 +354,7 @@ class Planner {
     Arithmetic arithmetic_;
     MessageBits bits_;
     LoadPlan plan_;
+    std::vector<CellStore> stores_;  ///< of the cells, row-major, for their index tables
     std::vector<Lane> lanes_;
     std::vector<std::uint64_t> voxels_begin_;  ///< number of spans that begin in each cell
     std::vector<std::uint64_t> spans_end_;     ///< number of spans that end just before each cell

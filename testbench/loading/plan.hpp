@@ -40,8 +40,11 @@ struct LoadPlan {
     std::vector<std::vector<std::uint64_t>> rows;  ///< digests, for each row's distributor, to the east
     std::uint32_t voxel_cycles = 0;                ///< in which a unit of a cell makes a voxel
     int loading_units = 1;                         ///< of a cell
-    LoadCounts counts;                             ///< of the scene; voxels and overflow are not counted here
-    std::uint64_t sent_polygons = 0;               ///< once for each lane that gets them
+    /// By cell, row-major: for each span that makes a voxel there, the lines of the index table that were
+    /// read to put it in order.
+    std::vector<std::vector<std::uint32_t>> lines;
+    LoadCounts counts;                ///< of the scene; voxels and overflow are not counted here
+    std::uint64_t sent_polygons = 0;  ///< once for each lane that gets them
     std::uint64_t sent_trapezes = 0;
 
     /// A lower bound on the cycles of loading, and what sets it.

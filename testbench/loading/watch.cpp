@@ -315,7 +315,9 @@ void LoadWatch::keep_span(std::size_t index, Cycle now) {
     const Cycle begins = std::max(now, until(machine_.loading_units - 1));
     kept.push_back(begins + each);
     kept.erase(kept.begin(), std::upper_bound(kept.begin(), kept.end(), now));
-    unit.made = kept.empty() ? now : kept.back();
+    const std::uint32_t lines = plan_.lines[index - layout_.cell(0, 0)][use.spans];
+    if (lines > 0) unit.ordered = std::max(unit.ordered, begins + each) + Cycle(lines) * costs_.load_order;
+    unit.made = std::max({now, kept.empty() ? now : kept.back(), unit.ordered});
     use.making += each;
     ++use.spans;
     use.most_kept = std::max(use.most_kept, std::uint64_t(kept.size()));

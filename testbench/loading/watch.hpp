@@ -76,7 +76,7 @@ class LoadWatch : public LoadListener {
     /// Every sent message arrives, and every cell drops the messages that end in it.
     const Faults& conservation() const { return conservation_; }
     /// A message moves in the first cycle in which its unit is done, the wires are free and there is room. A
-    /// cell is loaded when the end-of-scene mark has passed and its last voxel is made.
+    /// cell is loaded when the end-of-scene mark has passed and its last voxel is made and in order.
     const Faults& promptness() const { return promptness_; }
 
   private:
@@ -106,7 +106,8 @@ class LoadWatch : public LoadListener {
         Cycle taken = never;
         std::vector<Cycle> kept;  ///< cell: when the voxels of the spans kept will be made, in order
         Cycle room = 0;           ///< cell: first cycle in which it could keep the span at hand
-        Cycle made = 0;           ///< cell: cycle in which all voxels of the spans kept are made
+        Cycle ordered = 0;        ///< cell: cycle in which the last voxel stands in the index table
+        Cycle made = 0;           ///< cell: cycle in which all voxels of the spans kept are made and in order
         bool set_up = false;      ///< cell: sources and viewer are known
         bool finished = false;    ///< cell: has seen the end-of-scene mark
         std::uint32_t object = no_object;

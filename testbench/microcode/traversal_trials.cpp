@@ -112,9 +112,12 @@ class LeaveTrial : public MicroTrial {
     Ray ray_;
 };
 
+/// A voxel's run against a ray's, going to the back or to the front.
 class RunTrial : public MicroTrial {
   public:
-    RunTrial(const MicroSetting& s) : MicroTrial(s, run_program(s), {"compare_interval"}) {}
+    RunTrial(const MicroSetting& s, bool outwards)
+        : MicroTrial(s, run_program(s, outwards), {outwards ? "" : "compare_interval"}),
+          outwards_(outwards) {}
 
   private:
     void draw(MicroRandom& random) override {
@@ -123,15 +126,55 @@ class RunTrial : public MicroTrial {
         if (far_ < near_) std::swap(far_, near_);
         if (high_ < low_) std::swap(high_, low_);
         if (random.chance(0.2)) near_ = high_;
+        far_ = std::max(far_, near_);
+        most_ = random.chance(0.5) ? far_ : std::max(far_, random.word(depth, -1, depth.most() / 8));
         put("near", near_);
-        put("far", std::max(far_, near_));
+        put("far", far_);
         put("low", low_);
         put("high", high_);
+        if (outwards_) put("most", most_);
     }
     void compare() override {
-        expect("meets", take("meets"), !(near_ > high_ || std::max(far_, near_) < low_));
+        const bool over = outwards_ ? most_ < low_ : near_ > high_;
+        expect("meets", take("meets"), over ? 2 : !(near_ > high_ || far_ < low_));
     }
-    double near_ = 0, far_ = 0, low_ = 0, high_ = 0;
+    bool outwards_;
+    double near_ = 0, far_ = 0, low_ = 0, high_ = 0, most_ = 0;
+};
+
+/// A line that a new voxel passes in the index table, or behind which it stands.
+class OrderTrial : public MicroTrial {
+  public:
+    explicit OrderTrial(const MicroSetting& s) : MicroTrial(s, order_program(s), {"load_order"}) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        const Format& depth = arithmetic_.formats().depth;
+        for (IndexEntry* line : {&line_, &voxel_}) {
+            line->near = random.word(depth, 0, depth.most() / 8);
+            line->far = std::max(line->near, random.word(depth, 0, depth.most() / 8));
+        }
+        // It stops once, and passes the others.
+        if (random.chance(0.8) && voxel_.near > line_.near) {
+            std::swap(voxel_.near, line_.near);
+            line_.far = std::max(line_.near, line_.far);
+        }
+        if (random.chance(0.05)) voxel_.near = line_.near;
+        if (random.chance(0.2)) voxel_.far = std::max(line_.far, voxel_.near);
+        put("near", voxel_.near);
+        put("far", voxel_.far);
+        put("line near", line_.near);
+        put("most", line_.far);
+    }
+    void compare() override {
+        std::vector<IndexEntry> table;
+        put_in_order(table, 0, line_.near, line_.far);
+        put_in_order(table, 1, voxel_.near, voxel_.far);
+        const bool before = table[0].voxel == 1;
+        expect("before", take("before"), before);
+        if (before) expect("most", take("most"), table[1].most);
+    }
+    IndexEntry line_, voxel_;
 };
 
 /// Where a ray enters a run, at rungs `depth` and `interval`.
@@ -285,7 +328,9 @@ TrialList traversal_trials(const MicroSetting& s) {
     TrialList all;
     all.push_back(std::make_unique<WalkTrial>(s));
     all.push_back(std::make_unique<LeaveTrial>(s));
-    all.push_back(std::make_unique<RunTrial>(s));
+    all.push_back(std::make_unique<RunTrial>(s, false));
+    all.push_back(std::make_unique<RunTrial>(s, true));
+    all.push_back(std::make_unique<OrderTrial>(s));
     all.push_back(std::make_unique<EnterTrial>(s, HitTest::depth));
     all.push_back(std::make_unique<EnterTrial>(s, HitTest::interval));
     all.push_back(std::make_unique<PlaneTrial>(s, HitTest::plane));

@@ -26,7 +26,9 @@ class OwnCell : public CellSocket {
         sensitive << woken();
         dont_initialize();
     }
-    void begin_phase() override { injector_.begin_phase(env_.phase == Phase::trace); }
+    void begin_phase() override {
+        injector_.begin_phase(env_.phase == Phase::trace, start_of_primary(env_, x_, y_));
+    }
 
   private:
     struct Place {

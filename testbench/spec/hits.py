@@ -23,9 +23,8 @@ def project(p, voxel):
 
 
 def nearest_hit(ray, t_end, voxels, S, v):
-    """(distance, index), or None; counts into `v`."""
+    """(distance, number), or None; counts into `v`."""
     f = S.formats
-    v.runs += len(voxels)
     if not voxels:
         return None
     z0 = ray.p[2]
@@ -33,8 +32,13 @@ def nearest_hit(ray, t_end, voxels, S, v):
     low, high = (z0, z1) if z0 < z1 else (z1, z0)
     test = test_run if S.option["hit"] in ("depth", "interval") else test_plane
     nearest = None
-    for i, voxel in enumerate(voxels):
-        if voxel.polygon == ray.leaves or voxel.near > high + f.hair or voxel.far < low - f.hair:
+    low, high, inwards = low - f.hair, high + f.hair, ray.d[2].raw >= 0
+    for i, most in index_table(voxels) if inwards else reversed(index_table(voxels)):
+        voxel = voxels[i]
+        v.runs += 1
+        if voxel.near > high if inwards else most < low:
+            break
+        if voxel.polygon == ray.leaves or voxel.near > high or voxel.far < low:
             continue
         v.tests += 1
         v.edges += len(voxel.edges)
@@ -46,7 +50,18 @@ def nearest_hit(ray, t_end, voxels, S, v):
             nearer = t <= first + f.tie if voxel.polygon < other.polygon else t < first - f.tie
         if not nearest or nearer:
             nearest = (t, i)
+            z = f.depth.hold(z0 + t * ray.d[2])
+            low, high = (low, min(high, z + f.tie)) if inwards else (max(low, z - f.tie), high)
     return nearest
+
+
+def index_table(voxels):
+    """By near: number of the voxel, largest far up to it."""
+    table, most = [], None
+    for i in sorted(range(len(voxels)), key=lambda i: voxels[i].near_level):
+        most = voxels[i].far if most is None else max(most, voxels[i].far)
+        table.append((i, most))
+    return table
 
 
 def test_run(ray, t_end, z1, voxel, S):

@@ -74,7 +74,7 @@ class Replay:
     def tell(self, event):
         cell = self.cell
         if event.what == "phase":
-            cell.begin_phase(event.value)
+            cell.begin_phase(event.value, event.cycle)
         elif event.what == "drain":
             cell.draining = event.value
         else:

@@ -25,10 +25,20 @@ class Slot:
 def back_off(S, answer, attempt):
     """64 to 4096 cycles, and a jitter that is drawn from the ray's id."""
     base = S.cost("backoff") << min(attempt, 6)
-    seed, ray = S.option["seed"], answer.pixel << 32 | answer.branch
+    return base + drawn(S, answer.pixel << 32 | answer.branch, attempt) % base
+
+
+def first_start(S, pixel):
+    """Cycles after the phase's beginning."""
+    within = S.option["start-within"]
+    return drawn(S, pixel << 32, ATTEMPTS + 1) % within if within else 0
+
+
+def drawn(S, ray, attempt):
+    seed = S.option["seed"]
     h = (seed * 0x9e3779b97f4a7c15 ^ ray * 0xbf58476d1ce4e5b9 ^ attempt * 0x94d049bb133111eb) & 0xffffffffffffffff
     h = (h ^ h >> 31) * 0x7fb5d329728ea185 & 0xffffffffffffffff
-    return base + (h ^ h >> 27) % base
+    return h ^ h >> 27
 
 
 class Store:
@@ -47,12 +57,13 @@ class Store:
         self.direct = self.direct_result = self.pixel = None
         self.voxel_lit, self.voxel_known, self.asked = [], [], []
 
-    def begin_phase(self, phase):
+    def begin_phase(self, phase, now):
         if self.phase == "load":
             self.voxel_lit = [set(range(len(self.S.lights))) for _ in self.voxels]
             self.voxel_known = [set() for _ in self.voxels]
         self.phase = phase
         self.primary_to_send = phase == "trace"
+        self.own_retry_at = now + first_start(self.S, self.y * self.S.width + self.x)
         self.precast_next = 0
         self.asked = [set() for _ in self.voxels]
         self.moved += 1

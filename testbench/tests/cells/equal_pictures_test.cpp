@@ -62,6 +62,7 @@ Drawn draw(std::uint64_t seed) {
     m.feed_lanes = random.whole(1, 20);
     m.feed_bits = random.whole(1, 300);
     m.load_queue = random.chance(0.5) ? 0 : random.whole(1, 4);
+    if (random.chance(0.3)) m.start_within = std::uint32_t(random.whole(1, 5000));
     if (random.chance(0.25)) {  // no promise: it may get stuck, but if it ends, the picture is the same
         drawn.must_end = false;
         m.networks = Networks(random.whole(0, 3));

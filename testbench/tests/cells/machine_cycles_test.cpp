@@ -128,10 +128,10 @@ struct Loading : Row {
         const int span_arrives = trapeze_arrives + 8 + span_link;
         // Each cell keeps the span for its voxel and passes it on after 1 cycle.
         const int span_kept = span_arrives + (settings.width - 1) * (1 + span_link) + 1;
-        // The last one makes its voxel in 12 cycles. The end-of-scene mark is there before: it is sent in the
-        // cycle after that in which the last buffer was emptied and takes one cycle on the wires and one in
-        // the cell.
-        return Cycle(span_kept + 12);
+        // The last one makes its voxel in 12 cycles and puts it in order in one. The end-of-scene mark is
+        // there before: it is sent in the cycle after that in which the last buffer was emptied and takes one
+        // cycle on the wires and one in the cell.
+        return Cycle(span_kept + 12 + 1);
     }
 };
 

@@ -122,6 +122,7 @@ void draw_machine(Drawn& drawn, property::Random& random) {
     m.feed_lanes = random.whole(1, 6);
     m.feed_bits = random.whole(1, 300);
     m.load_queue = random.chance(0.5) ? 0 : random.whole(1, 4);
+    if (random.chance(0.3)) m.start_within = std::uint32_t(random.whole(1, 3000));
     // Further settings that only affect time belong here.
 }
 

@@ -150,21 +150,11 @@ void at_every_rung(const CellScene& scene,
     }
 }
 
-TEST(Ladder, AVisitIsTheSameByTheDepthsThatStandApartFromTheirVoxels) {
+TEST(Ladder, AVisitIsTheSameByAnIndexTableThatStandsApartFromTheVoxels) {
     for (const std::uint64_t seed : property::seeds(200, 6)) {
         SCOPED_TRACE(property::rerun(seed));
         Random random(seed);
-        CellScene scene = shapes::empty_cube(3, 3, 12, random.whole(1, 300));
-        for (int i = 0; i < 12; ++i) {
-            const shapes::Axes axes = shapes::attitude(random, random.whole(0, 5));
-            const dvec3 centre = scene.frame.cube().high *
-                                 dvec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
-            auto outline =
-                shapes::lift(shapes::star(random, random.whole(3, 12), random.uniform(0.5, 4)), axes, centre);
-            outline = clip_to_box(outline, scene.frame.cube());
-            if (outline.empty() || shapes::area_of(outline) < 1e-6) continue;
-            hand_made::add_polygon(scene, 0, outline);
-        }
+        const CellScene scene = shapes::random_polygons(random, 12);
         int hits = 0;
         at_every_rung(scene, [&](const Context& context, const std::vector<CellStore>& cells) {
             for (int i = 0; i < 300; ++i) {
@@ -174,12 +164,11 @@ TEST(Ladder, AVisitIsTheSameByTheDepthsThatStandApartFromTheirVoxels) {
                 const Ray ray = walker::ray_at(context, share * scene.frame.cube().high,
                                                shapes::sloped_direction(random), x, y);
                 const CellStore& store = cells[std::size_t(y * scene.frame.width + x)];
-                std::vector<DepthRun> runs{
-                    {-1e9, 1e9}};  // kept if a store has none: null means the voxels' own
-                for (const Voxel& voxel : store.voxels) runs.push_back({voxel.near, voxel.far});
+                std::vector<IndexEntry> lines(1);  // kept if a store has none: null means the store's own
+                lines.insert(lines.end(), store.index.begin(), store.index.end());
                 const Visit a = visit_cell(store, ray, context);
                 const Visit b =
-                    visit_cell(store, ray, context, {runs.data() + 1, std::uint32_t(store.voxels.size())});
+                    visit_cell(store, ray, context, {lines.data() + 1, std::uint32_t(store.index.size())});
                 ASSERT_EQ(a.event, b.event);
                 ASSERT_EQ(std::tie(a.hit.t, a.hit.voxel, a.crossing.t, a.crossing.side),
                           std::tie(b.hit.t, b.hit.voxel, b.crossing.t, b.crossing.side));

@@ -287,4 +287,19 @@ inline dvec3 sloped_direction(Random& random) {
     return glm::normalize(dvec3(x, y, z));
 }
 
+/// Stars of any attitude in a cube of 3x3 cells, `count` of them less those that lie outside.
+inline CellScene random_polygons(Random& random, int count) {
+    CellScene scene = empty_cube(3, 3, 12, random.whole(1, 300));
+    for (int i = 0; i < count; ++i) {
+        const Axes axes = attitude(random, random.whole(0, 5));
+        const dvec3 centre =
+            scene.frame.cube().high * dvec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+        auto outline = lift(star(random, random.whole(3, 12), random.uniform(0.5, 4)), axes, centre);
+        outline = clip_to_box(outline, scene.frame.cube());
+        if (outline.empty() || area_of(outline) < 1e-6) continue;
+        hand_made::add_polygon(scene, 0, outline);
+    }
+    return scene;
+}
+
 }  // namespace raycell::shapes

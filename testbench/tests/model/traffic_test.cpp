@@ -355,7 +355,7 @@ TEST(StorageBits, OfRegistersAreThoseOfTheTable) {
     EXPECT_EQ(bits.ages, (6 + 4 + 2) * 17);
     EXPECT_EQ(bits.credits, 10 * 2 + 8 * 4);
     EXPECT_EQ(bits.outputs, 4 * 256);
-    EXPECT_EQ(bits.traversal, 2 * (40 + 31 + 56 + 18 + 8 + 68 + 40));
+    EXPECT_EQ(bits.traversal, 2 * (40 + 31 + 56 + 28 + 8 + 68 + 40));
     EXPECT_EQ(bits.shading, 12 + 4 * 60 + 20 + 40 + 112 + 129 + 10 + 87);
     EXPECT_EQ(bits.loading, 2 * ((943 - 3) + (104 - 3)));
     EXPECT_EQ(bits.latches, 217 + 162);
@@ -371,6 +371,11 @@ TEST(StorageBits, OfRegistersFollowTheMachine) {
     sized.machine.networks = Networks::quadrant;  // eight ray inputs, not six
     EXPECT_EQ(bits().decisions - plain.decisions, 2 * 48);
     EXPECT_EQ(bits().ages - plain.ages, 2 * 17);
+    sized.machine = {};
+    sized.machine.start_within = 1 << 14;  // fits the back-off's register
+    EXPECT_EQ(bits().own_ray, plain.own_ray);
+    sized.machine.start_within = 1 << 20;
+    EXPECT_EQ(bits().own_ray, plain.own_ray + 6);
     sized.machine = {};
     sized.machine.recovery = Recovery::none;  // nothing is sent again
     EXPECT_EQ(bits().own_ray, plain.own_ray - 17);

@@ -232,10 +232,10 @@ TEST(Voxels, BitsGrowFromRungToRungAndWithTheWord) {
         return voxel_bits(settings, formats, 2);
     };
     settings.normals = Normals::voxel;
-    // Id; features: six of 12 bits, Shine 12, index of refraction 16, mirror flag; a level of 1024; a normal; two
-    // slopes, two bits for the axis, one for the sign.
+    // Id; features: six of 12 bits, Shine 12, index of refraction 16, mirror flag; a level of 1024; a normal;
+    // two slopes, two bits for the axis, one for the sign; its line of the index table, a number and a level.
     EXPECT_EQ(feature_bits(formats), 6 * 12 + 12 + 16 + 1);
-    EXPECT_EQ(bits(HitTest::depth).base, 20 + 101 + 10 + 60 + 2 * 20 + 3);
+    EXPECT_EQ(bits(HitTest::depth).base, 20 + 101 + 10 + 60 + 2 * 20 + 3 + 10 + 10);
     EXPECT_EQ(bits(HitTest::interval).base, bits(HitTest::depth).base + 10);
     EXPECT_EQ(bits(HitTest::plane).base, bits(HitTest::interval).base + 20) << "the offset of its plane";
     // 64 sub-cells; four borders of the window in 32nds. Each needs five bits: 0 to 31, or 1 to 32.

@@ -31,6 +31,7 @@ const std::vector<Words>& settings_of_time() {
         {"--feed-lanes", "5", "--feed-bits", "1"},
         {"--feed-lanes", "4096", "--feed-bits", "4096", "--load-queue", "3"},
         {"--load-queue", "1", "--cost", "geometry_skip=30", "--cost", "load_advance=20"},
+        {"--cost", "load_order=40", "--start-within", "3000"},
         {"--exterior-processors", "1"},
         {"--exterior-latency", "5000"},
         {"--seed", "2"},

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace raycell {
 namespace {
 
@@ -27,6 +29,34 @@ TEST(Injector, SendsThePrimaryRayOnceAndAgainAfterItWasPostponed) {
     EXPECT_FALSE(injector.primary_sent()) << "not for the first time";
     injector.primary_answered();
     EXPECT_FALSE(injector.unfinished());
+}
+
+TEST(Injector, SendsThePrimaryRayNotBeforeItsStart) {
+    Injector injector;
+    injector.begin_phase(true, 70);
+    Wakeup wakeup;
+    EXPECT_FALSE(injector.primary_due(69, wakeup));
+    EXPECT_EQ(wakeup.next, 70u);
+    EXPECT_TRUE(injector.unfinished());
+    EXPECT_TRUE(injector.primary_due(70, wakeup));
+}
+
+TEST(Injector, StartsAreSpreadEvenlyAndOtherwiseForEverySeed) {
+    MachineSettings machine;
+    EXPECT_EQ(Retry::first_start(machine, 5), 0u) << "all at once";
+    machine.start_within = 1000;
+    std::array<int, 10> tenths{};
+    int equal = 0;
+    for (std::uint64_t pixel = 0; pixel < 10000; ++pixel) {
+        machine.seed = 1;
+        const Cycle start = Retry::first_start(machine, pixel << 32);
+        ASSERT_LT(start, 1000u);
+        ++tenths[start / 100];
+        machine.seed = 2;
+        equal += start == Retry::first_start(machine, pixel << 32);
+    }
+    for (const int tenth : tenths) EXPECT_NEAR(tenth, 1000, 150);
+    EXPECT_LT(equal, 50);
 }
 
 TEST(Injector, IsUnfinishedWhileARayStandsInItsRegister) {

@@ -48,15 +48,15 @@ TEST(LoadingUnit, MakesTheVoxelsOfTheSpansThatItKeepsOneAfterTheOther) {
     LoadingUnits unit(1);
     Wakeup wakeup;
     EXPECT_EQ(unit.kept(100, 7), 0);
-    unit.keep(100, 10);
+    unit.keep(100, 0, 10);
     EXPECT_EQ(unit.made(), 110u);
-    unit.keep(100, 30);
+    unit.keep(100, 0, 30);
     EXPECT_EQ(unit.made(), 210u);
     EXPECT_EQ(unit.kept(100, 30), 2);
     EXPECT_EQ(unit.kept(100, 109), 2);
     EXPECT_EQ(unit.kept(100, 110), 1);
     EXPECT_EQ(unit.kept(100, 210), 0);
-    unit.keep(100, 500);
+    unit.keep(100, 0, 500);
     EXPECT_EQ(unit.made(), 600u) << "it was idle";
     EXPECT_EQ(wakeup.next, never);
 }
@@ -64,8 +64,8 @@ TEST(LoadingUnit, MakesTheVoxelsOfTheSpansThatItKeepsOneAfterTheOther) {
 TEST(LoadingUnit, KeepsNoMoreSpansThanItMayAndAsksToBeWokenWhenOneIsDone) {
     LoadingUnits unit(1);
     Wakeup wakeup;
-    unit.keep(100, 10);
-    unit.keep(100, 30);
+    unit.keep(100, 0, 10);
+    unit.keep(100, 0, 30);
     EXPECT_TRUE(unit.has_room(3, 100, 40, wakeup));
     EXPECT_TRUE(unit.has_room(0, 100, 40, wakeup)) << "no limit";
     EXPECT_EQ(wakeup.next, never);
@@ -79,10 +79,10 @@ TEST(LoadingUnit, KeepsNoMoreSpansThanItMayAndAsksToBeWokenWhenOneIsDone) {
 
 TEST(LoadingUnit, SharesTheSpansOutBetweenItsUnits) {
     LoadingUnits unit(2);
-    unit.keep(100, 10);
-    unit.keep(100, 30);
+    unit.keep(100, 0, 10);
+    unit.keep(100, 0, 30);
     EXPECT_EQ(unit.made(), 130u) << "at the same time";
-    unit.keep(100, 40);
+    unit.keep(100, 0, 40);
     EXPECT_EQ(unit.made(), 210u) << "by the one that is free first";
     EXPECT_EQ(unit.kept(100, 40), 3);
     EXPECT_EQ(unit.to_make(40), 170u + 90u);
@@ -92,16 +92,35 @@ TEST(LoadingUnit, SharesTheSpansOutBetweenItsUnits) {
     EXPECT_EQ(unit.kept(100, 110), 2);
     EXPECT_EQ(unit.kept(100, 130), 1);
     EXPECT_EQ(unit.kept(100, 210), 0);
-    unit.keep(100, 500);
-    unit.keep(100, 500);
+    unit.keep(100, 0, 500);
+    unit.keep(100, 0, 500);
     EXPECT_EQ(unit.made(), 600u) << "both were idle";
+}
+
+TEST(LoadingUnit, PutsItsVoxelsInOrderOneAfterTheOtherOnceTheyAreMade) {
+    LoadingUnits unit(2);
+    unit.keep(100, 30, 10);
+    EXPECT_EQ(unit.made(), 140u);
+    unit.keep(100, 20, 10);
+    EXPECT_EQ(unit.made(), 160u) << "both are made in cycle 110";
+    unit.keep(100, 5, 10);
+    EXPECT_EQ(unit.made(), 215u);
+    unit.keep(100, 0, 10);
+    EXPECT_EQ(unit.made(), 215u) << "nothing came of this one";
+    EXPECT_EQ(unit.kept(100, 109), 4) << "its place is free when it is made";
+    EXPECT_EQ(unit.kept(100, 210), 0);
+    unit.close();
+    Wakeup wakeup;
+    EXPECT_FALSE(unit.closes(214, wakeup));
+    EXPECT_EQ(wakeup.next, 215u);
+    EXPECT_TRUE(unit.closes(215, wakeup));
 }
 
 TEST(LoadingUnit, IsLoadedOnceWhenTheMarkHasPassedAndTheLastVoxelIsMade) {
     LoadingUnits unit(1);
     Wakeup wakeup;
     EXPECT_FALSE(unit.closes(5, wakeup)) << "no mark yet";
-    unit.keep(100, 10);
+    unit.keep(100, 0, 10);
     unit.close();
     EXPECT_FALSE(unit.closes(20, wakeup));
     EXPECT_EQ(wakeup.next, 110u);

@@ -22,6 +22,7 @@ struct UnitContext {
         context = std::make_unique<Context>(scene, settings);
         store.voxels.resize(2);
         store.voxels[1].object = 1;
+        make_index(store);
         store.lit.assign(2, 0);
         store.known.assign(2, 0);
     }
