@@ -15,7 +15,7 @@ RayPacket* Cell::launch(const Ray& ray, const Ray* parent) {
 void Cell::feed_own(Cycle now) {
     if (env_.draining) return;
     if (env_.phase == Phase::precast) {
-        const auto next = injector_.next_precast(store_.voxels.size(), env_.context.scene.sources.size());
+        const auto next = injector_.next_precast(store_.voxels.size(), env_.context.lights.rays.size());
         if (!next) return;
         injector_.load(*launch(
             voxel_shadow_ray(env_.context, store_, next->voxel, next->source, RayKind::precast, x_, y_),

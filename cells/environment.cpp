@@ -18,7 +18,7 @@ CellConfig::CellConfig(const CellScene& scene, const PictureSettings& picture_se
       cycles{cycles_for(bits.ray), cycles_for(bits.shadow_ray), cycles_for(bits.intensity),
              cycles_for(bits.verdict)},
       classes(buffer_classes(machine.networks)),
-      voxel_bits(raycell::voxel_bits(settings, context.arithmetic.formats(), scene.sources.size())),
+      voxel_bits(raycell::voxel_bits(settings, context.arithmetic.formats(), context.lights.rays.size())),
       kept_span_bits(raycell::kept_span_bits(bits)),
       answer_routing(classes.count > 1 ? int(machine.costs.route_return) : 0) {
     if (!machine.wire_check) return;
@@ -69,10 +69,13 @@ bool equal(const Material& a, const Material& b) {
 }
 bool equal(const ViewerMessage& a, const ViewerMessage& b) {
     const auto same = [](const Source& p, const Source& q) {
-        return p.position == q.position && p.intensity == q.intensity;
+        return p.kind == q.kind && p.position == q.position && p.intensity == q.intensity &&
+               p.axis == q.axis && p.cut_off == q.cut_off && p.falloff == q.falloff && p.edge_u == q.edge_u &&
+               p.edge_v == q.edge_v && p.radius == q.radius && p.exponent == q.exponent;
     };
     return a.eye == b.eye && a.at_infinity == b.at_infinity && a.beyond == b.beyond &&
            a.background == b.background && a.depth_levels == b.depth_levels && a.level == b.level &&
+           a.tells_kinds == b.tells_kinds && a.samples == b.samples && a.share == b.share &&
            std::equal(a.sources.begin(), a.sources.end(), b.sources.begin(), b.sources.end(), same);
 }
 
@@ -138,7 +141,7 @@ void Environment::pack_and_unpack(LoadItem& item, int charged) {
 int CellConfig::load_bits(const LoadItem& item) const {
     switch (item.kind) {
         case LoadItem::Kind::setup:
-            return bits.setup(context.scene.sources.size());
+            return bits.setup(SourceCounts(context.scene.sources, settings.source_samples));
         case LoadItem::Kind::features:
             return bits.features;
         case LoadItem::Kind::polygon:

@@ -143,7 +143,7 @@ void Machine::run_phase(Phase phase, RunResult& result) {
 
 void Machine::count_precast_rays() {
     for (const Cell& cell : parts_.array.cells()) precast_rays_ += cell.store().voxels.size();
-    precast_rays_ *= parts_.environment.context.sources.size();
+    precast_rays_ *= parts_.environment.context.lights.rays.size();
 }
 
 // ---- while a phase runs

@@ -86,7 +86,7 @@ Cycle MachineParts::slow_ray() const {
     const Cycle span = Cycle(env.width() + env.height());
     const Cycle hop = 64 + Cycle(env.cycles_for(env.bits.ray)) + Cycle(env.costs().walk_step);
     return Cycle(env.costs().backoff) * 128 + span * hop + Cycle(env.machine.exterior_latency) +
-           dearest * Cycle(1 + env.context.scene.sources.size());
+           dearest * Cycle(1 + env.context.lights.rays.size());
 }
 
 }  // namespace raycell

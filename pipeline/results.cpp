@@ -55,7 +55,8 @@ void Results::collect(RunResult& result) const {
 
 void Results::collect_cells(RunResult& result) const {
     const Context& context = parts_.environment.context;
-    const VoxelBits each = voxel_bits(context.settings, context.arithmetic.formats(), context.sources.size());
+    const VoxelBits each =
+        voxel_bits(context.settings, context.arithmetic.formats(), context.lights.rays.size());
     std::uint64_t slot_cycles = 0;
     Cell::Remaining to_come;
     for (const Cell& cell : parts_.array.cells()) {

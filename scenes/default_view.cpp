@@ -44,10 +44,11 @@ void add_default_view(Scene& scene, Diagnostics& diagnostics) {
     view.from = centre + towards_viewer * (radius / std::sin(glm::radians(view.angle / 2)));
     view.at = centre;
     scene.view = view;
-    scene.sources.assign(1, LightSource{view.from, std::nullopt});
+    const bool dark = scene.sources.empty();
+    if (dark) scene.sources.push_back({view.from, std::nullopt});
     diagnostics.note(scene.name,
-                     "no view given: the bounding box is framed from the side of +z, with one light at "
-                     "the viewer");
+                     std::string("no view given: the bounding box is framed from the side of +z") +
+                         (dark ? ", with one light at the viewer" : ""));
 }
 
 void take_view(Scene& scene, const Scene& view_scene) {

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "scenes/emitters.hpp"
 #include "scenes/text_source.hpp"
 
 namespace raycell {
@@ -19,7 +20,7 @@ std::string lower_extension(const std::filesystem::path& path) {
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& path, const std::optional<std::filesystem::path>& view_file,
-                 Diagnostics& diagnostics) {
+                 Diagnostics& diagnostics, const std::optional<std::filesystem::path>& source_file) {
     const std::string file = printable_path(path);
     const std::string extension = lower_extension(path);
     if (extension != ".nff" && extension != ".obj") {
@@ -28,17 +29,18 @@ Scene load_scene(const std::filesystem::path& path, const std::optional<std::fil
         throw InputError(file, 0, "unknown kind of scene file", "a name that ends in .nff or .obj");
     }
     Scene scene = extension == ".nff" ? read_nff(path, diagnostics) : read_obj(path, diagnostics);
+    if (extension == ".obj") add_emitters(scene, diagnostics);
     if (view_file) {
         if (lower_extension(*view_file) == ".obj") {
             throw InputError(printable_path(*view_file), 0, "an OBJ file has no view",
                              "an NFF file with 'v'");
         }
         take_view(scene, read_view_file(*view_file, diagnostics));
-    } else if (extension == ".obj") {
-        add_default_view(scene, diagnostics);
-    } else if (!scene.view) {
+    } else if (extension == ".nff" && !scene.view) {
         throw InputError(file, 1, "the scene has no view", "a 'v' entity, or a view file");
     }
+    if (source_file) take_sources(scene, read_sources(*source_file));
+    if (!view_file && extension == ".obj") add_default_view(scene, diagnostics);
     if (scene.primitives.empty()) {
         diagnostics.warn(file, 0, "no primitives", "the scene has no objects; the picture is its background");
     }

@@ -54,7 +54,7 @@ class MtlFeed : public LineFeed {
         const std::string_view key = words[0];
         if (key == "newmtl") {
             begin_material(text);
-        } else if (key == "Kd" || key == "Ks" || key == "Tf") {
+        } else if (key == "Kd" || key == "Ks" || key == "Ke" || key == "Tf") {
             colour(words, text);
         } else if (key == "Ns" || key == "Ni" || key == "d" || key == "Tr") {
             scalar(words, text);
@@ -76,14 +76,12 @@ class MtlFeed : public LineFeed {
             const std::string quoted = "'" + printable(key) + "'";
             diagnostics_.warn(lines_.file(), lines_.line(), "ignored " + quoted, quoted + why, 1);
         };
-        if (key == "Ka" || key == "Ke") {
+        if (key == "Ka") {
             const bool black = std::none_of(words.begin() + 1, words.end(), [](std::string_view word) {
                 double value = 0;
                 return parse_number(word, value) == NumberFault::none && value > 0;
             });
-            if (key == "Ka" && in_material_) facts_.back().ambient = !black;
-            if (key == "Ke" && !black)
-                name(" (emission) is ignored: the surface gives no light and is lit like any other");
+            if (in_material_) facts_.back().ambient = !black;
         } else if (key.substr(0, 4) == "map_" || is_one_of({"bump", "norm", "disp", "decal", "refl"})) {
             name(" is ignored: textures are not read");
         } else if (is_one_of({"Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"})) {
@@ -201,6 +199,9 @@ Material convert(const tinyobj::material_t& in, const Facts& facts, MtlFeed& fee
     }
     if (facts.has_diffuse && m.colour == dvec3(0) && facts.ambient)
         warn("Ka", "Ka is ignored: ambient light takes the colour of Kd, which is black");
+    for (int i = 0; i < 3; ++i) m.emission[i] = std::clamp(double(in.emission[i]), 0.0, max_intensity);
+    if (m.emission != dvec3(in.emission[0], in.emission[1], in.emission[2]))
+        warn("emission range", "Ke below 0 or above 1e6; brought to the nearest of them");
     m.specular = share(mean(in.specular), "the mean of Ks is outside 0 to 1; brought to the nearest of them");
     m.mirror = in.illum >= 3 && in.illum <= 9;
     if (in.shininess < 0) warn("negative Ns", "Ns below 0; taken as 0");

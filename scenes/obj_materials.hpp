@@ -18,8 +18,9 @@ namespace raycell {
 /// The materials that an OBJ scene can name. Kd is the colour, with diffuse 1; without Kd both are the
 /// default Material's. The mean of Ks is the specular share; illum 3 to 9 makes it a mirror. Ns is the shine,
 /// Ni the index of refraction. With illum 4, 6, 7 or 9 the transmitted share is 1 - d, or Tr, or without both
-/// the mean of Tf. All else (Ka, Ke, textures, physically based values, unknown words) is ignored with a
-/// warning, once per kind and file, except a black Ke and a Ka that changes nothing.
+/// the mean of Tf. Ke is the emission, which makes sources of faces (emitters.hpp). All else (Ka, textures,
+/// physically based values, unknown words) is ignored with a warning, once per kind and file, except a Ka
+/// that changes nothing.
 ///
 /// Each of these gives a warning: d and Tr disagree (d holds); two materials of one name (the first holds);
 /// missing colour components (they repeat the last one given); shares outside 0..1 (clamped); a negative Ns

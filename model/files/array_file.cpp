@@ -167,7 +167,12 @@ void put_scene(A& a, const CellScene& scene) {
         a.real(m.transmit), a.real(m.ior), a.whole(m.mirror);
     }
     a.whole(scene.sources.size());
-    for (const Source& source : scene.sources) a.vector(source.position), a.vector(source.intensity);
+    for (const Source& source : scene.sources) {
+        a.vector(source.position), a.vector(source.intensity);
+        if (source.kind == SourceKind::point) continue;
+        a.whole(source.kind), a.vector(source.axis), a.real(source.cut_off), a.real(source.falloff);
+        a.vector(source.edge_u), a.vector(source.edge_v), a.real(source.radius);
+    }
     a.whole(scene.polygons.size());
     for (const Polygon& polygon : scene.polygons) {
         a.whole(polygon.id), a.whole(polygon.object), a.whole(polygon.drop), a.real(polygon.slack);

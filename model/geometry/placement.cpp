@@ -123,6 +123,27 @@ std::optional<CurvedSurface> curved_surface(const Primitive& primitive, const Fr
     return surface;
 }
 
+/// `share`: the intensity of a source without a colour.
+Source placed_source(const LightSource& source, const Frame& frame, double share) {
+    Source placed{frame.to_cells(source.position), source.colour.value_or(dvec3(share))};
+    placed.kind = source.kind;
+    if (source.kind == SourceKind::point) return placed;
+    if (is_area(source.kind)) {
+        placed.radius = source.radius / frame.cell_width;
+        placed.edge_u = frame.direction_to_cells(source.edge_u) / frame.cell_width;
+        placed.edge_v = frame.direction_to_cells(source.edge_v) / frame.cell_width;
+        if (source.kind != SourceKind::sphere)
+            placed.axis = -glm::normalize(glm::cross(placed.edge_u, placed.edge_v));
+        placed.position -= source.before * placed.axis;
+        return placed;
+    }
+    placed.axis = -frame.direction_to_cells(glm::normalize(source.direction));
+    if (source.kind != SourceKind::spot) return placed;
+    placed.cut_off = source.angle < 90 ? std::cos(glm::radians(source.angle)) : 0;
+    placed.falloff = source.falloff;
+    return placed;
+}
+
 }  // namespace
 
 CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings,
@@ -138,7 +159,7 @@ CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSetti
     placed.objects = scene.materials;
     const double share = 1 / std::sqrt(double(std::max<std::size_t>(scene.sources.size(), 1)));
     for (const LightSource& source : scene.sources) {
-        placed.sources.push_back({frame.to_cells(source.position), source.colour.value_or(dvec3(share))});
+        placed.sources.push_back(placed_source(source, frame, share));
     }
     for (const Primitive& primitive : scene.primitives) {
         const auto first = std::uint32_t(placed.polygons.size());

@@ -9,6 +9,7 @@
 #include "model/geometry/curved.hpp"
 #include "model/geometry/polygon.hpp"
 #include "model/geometry/scene.hpp"
+#include "model/geometry/sources.hpp"
 #include "model/numbers/arithmetic.hpp"
 #include "model/settings/settings.hpp"
 
@@ -46,12 +47,6 @@ struct Frame {
 inline ArrayExtent extent_of(const Frame& frame) {
     return {frame.width, frame.height, frame.depth, frame.level()};
 }
-
-/// A light source in cell coordinates.
-struct Source {
-    dvec3 position{0, 0, 0};
-    dvec3 intensity{1, 1, 1};
-};
 
 /// Names of the cube's faces, in the order of CellScene::beyond.
 enum Face { face_left, face_right, face_top, face_bottom, face_front, face_back };

@@ -22,14 +22,41 @@ struct Material {
     double transmit = 0.0;        ///< T, share of the refracted ray, 0..1
     double ior = 1.0;             ///< index of refraction, > 0 wherever transmit > 0
     bool mirror = true;           ///< false: Ks makes a highlight only (OBJ materials without reflection)
+    dvec3 emission{0, 0, 0};      ///< makes sources of its faces (scenes/emitters.hpp); no cell has it
 };
 
 constexpr std::size_t max_sources = 64;  ///< one bit each in a 64-bit verdict word
 
-/// A point source without attenuation.
+enum class SourceKind : std::uint8_t {
+    point,
+    directional,  ///< infinitely far away: everywhere the same direction
+    spot,         ///< a point that shines into a cone
+    rectangle,    ///< or any parallelogram: its front shines, by Lambert's law
+    triangle,     ///< the same
+    sphere        ///< as bright from everywhere
+};
+constexpr int source_kinds = 6;
+/// Whether it has an extent: then it is as many points as there are samples.
+constexpr bool is_area(SourceKind kind) { return kind >= SourceKind::rectangle; }
+/// As files and records name it.
+constexpr const char* name_of(SourceKind kind) {
+    constexpr const char* names[] = {"point", "directional", "spot", "rectangle", "triangle", "sphere"};
+    return names[int(kind)];
+}
+
+/// A light source without attenuation.
 struct LightSource {
-    dvec3 position{0, 0, 0};
+    dvec3 position{0, 0, 0};  ///< not of directional ones; of a rectangle or triangle a corner, of a sphere
+                              ///< the middle
     std::optional<dvec3> colour;  ///< absent: 1/sqrt(n) in each channel, n sources in the scene
+    SourceKind kind = SourceKind::point;
+    dvec3 direction{0, 0, 0};  ///< directional, spot: where its light goes, any length but 0
+    double angle = 90;         ///< spot: of its cone, from the axis to the edge, degrees, 0 < angle <= 90
+    double falloff = 1;        ///< spot: power of the cosine to the axis, >= 0
+    dvec3 edge_u{0, 0, 0};     ///< rectangle, triangle: from the corner to a neighbour
+    dvec3 edge_v{0, 0, 0};     ///< to the other one; its front is where u x v points to
+    double radius = 0;         ///< sphere: > 0
+    double before = 0;         ///< rectangle, triangle: so far before its own face, cells, so that it lights
 };
 
 /// The viewer of an NFF `v` entity.

@@ -165,14 +165,15 @@ void advance(Span& span, const Arithmetic& arithmetic) {
 CornerIntensities shade_corners(const Trapeze& trapeze, const CellScene& scene,
                                 const Arithmetic& arithmetic) {
     CornerIntensities shades{};
+    std::vector<Source> sources;
+    for (const Source& source : scene.sources) sources.push_back(middle_of(source));
     for (int i = 0; i < trapeze.corner_count; ++i) {
         const dvec3& corner = trapeze.corners[std::size_t(i)];
         const dvec3 normal = trapeze.normal.at(project(corner, trapeze.drop));
         const ShadePoint point = shade_point(corner, {0, 0, 1}, normal, trapeze.plane.n);
-        shades[std::size_t(i)] =
-            arithmetic.hold(arithmetic.formats().loading,
-                            local_intensity(point, scene.objects[trapeze.object], scene.sources.data(),
-                                            scene.sources.size(), ~std::uint64_t(0)));
+        shades[std::size_t(i)] = arithmetic.hold(
+            arithmetic.formats().loading, local_intensity(point, scene.objects[trapeze.object],
+                                                          sources.data(), sources.size(), ~std::uint64_t(0)));
     }
     return shades;
 }

@@ -15,7 +15,10 @@ namespace {
 class Packer {
   public:
     WireBits bits;
-    void type(LoadType type) { bits.put(std::uint64_t(type), field::type); }
+    LoadType type(LoadType type) {
+        bits.put(std::uint64_t(type), field::type);
+        return type;
+    }
     void word(const char* name, double& value, const Format& format, const char*) {
         put_word(bits, name, value, format, format.bits());
     }
@@ -42,7 +45,7 @@ class Unpacker {
   public:
     explicit Unpacker(const WireBits& packed) : bits(packed) {}
     WireBits bits;
-    void type(LoadType) { bits.get(field::type); }
+    LoadType type(LoadType) { return LoadType(bits.get(field::type)); }
     void word(const char*, double& value, const Format& format, const char*) {
         value = get_word(bits, format, format.bits());
     }
@@ -64,7 +67,10 @@ class Unpacker {
 class Namer {
   public:
     std::vector<WireField> all;
-    void type(LoadType type) { all.push_back({"type", field::type, std::to_string(int(type))}); }
+    LoadType type(LoadType type) {
+        all.push_back({"type", field::type, std::to_string(int(type))});
+        return type;
+    }
     void word(const char* name, double&, const Format& format, const char* meaning) {
         all.push_back({name, format.bits(), meaning});
     }
@@ -166,12 +172,13 @@ void fields_of_level(Archive& a, double& level) {
 
 /// A float of `bits` bits: 0 is 0, else 5 bits of exponent from 2^-8 on, counted from 1.
 template <typename Archive>
-void fields_of_shine(Archive& a, double& shine, const Formats& formats) {
+void fields_of_shine(Archive& a, double& shine, const Formats& formats,
+                     const std::array<const char*, 2>& names) {
     const int fraction = formats.shine_bits - Formats::shine_exponent_bits;
     int exponent = shine > 0 ? exponent_of(shine) + 9 : 0;
     auto rest = std::uint32_t(shine > 0 ? scale_by(scale_by(shine, 9 - exponent) - 1, fraction) : 0);
-    a.number("Shine exponent", exponent, Formats::shine_exponent_bits, "e: 2^(e - 9); 0: no power");
-    a.number("Shine fraction", rest, fraction, "behind the leading 1");
+    a.number(names[0], exponent, Formats::shine_exponent_bits, "e: 2^(e - 9); 0: no power");
+    a.number(names[1], rest, fraction, "behind the leading 1");
     if constexpr (Archive::reads)
         shine = exponent == 0 ? 0 : scale_by(1 + scale_by(rest, -fraction), exponent - 9);
 }
@@ -180,9 +187,16 @@ void fields_of_shine(Archive& a, double& shine, const Formats& formats) {
 
 ViewerMessage viewer_of(const Context& context) {
     const Frame& frame = context.scene.frame;
-    return {context.eye,        frame.viewer_at_infinity, context.scene.beyond,
-            context.background, frame.depth_levels,       frame.level(),
-            context.sources};
+    return {context.eye,
+            frame.viewer_at_infinity,
+            context.scene.beyond,
+            context.background,
+            frame.depth_levels,
+            frame.level(),
+            context.lights.sources,
+            !SourceCounts(context.lights.sources, 1).points(),
+            context.lights.samples,
+            context.lights.share};
 }
 
 LoadWire::LoadWire(const PictureSettings& picture, const Formats& formats)
@@ -193,9 +207,86 @@ LoadWire::LoadWire(const PictureSettings& picture, const Formats& formats)
       x_bits_(bits_for(picture.width)),
       y_bits_(bits_for(picture.height)) {}
 
+namespace {
+
+/// Of an area: its place, and what its points are sums of, mantissas of the same exponent.
+template <typename Archive>
+void fields_of_extent(Archive& a, Source& source, const Formats& formats) {
+    const Format mantissa(1, formats.word_bits + 11);
+    const auto scaled = [&](dvec3& v, const std::array<const char*, 3>& names) {
+        dvec3 m{scale_by(v.x, -source.exponent), scale_by(v.y, -source.exponent),
+                scale_by(v.z, -source.exponent)};
+        vector(a, names, m, mantissa, "mantissa, below 1");
+        if constexpr (Archive::reads) {
+            for (int axis = 0; axis < 3; ++axis) v[axis] = scale_by(m[axis], source.exponent);
+        }
+    };
+    a.exponent("place exponent", source.exponent, Formats::exponent_bits, "of all mantissas");
+    scaled(source.position, {"place x", "place y", "place z"});
+    if (source.kind != SourceKind::sphere) {
+        scaled(source.edge_u, {"u x", "u y", "u z"});
+        scaled(source.edge_v, {"v x", "v y", "v z"});
+        return;
+    }
+    double radius = scale_by(source.radius, -source.exponent);
+    a.word("radius", radius, mantissa, "mantissa, below 1");
+    if constexpr (Archive::reads) source.radius = scale_by(radius, source.exponent);
+}
+
+/// The pattern of an area's samples.
+template <typename Archive>
+void fields_of_pattern(Archive& a, int& samples, double& share, const Formats& formats) {
+    a.number("samples", samples, field::samples, "how many");
+    if (samples < 1 || std::size_t(samples) > max_sources)
+        throw std::length_error("load message: " + std::to_string(samples) + " samples; expected 1 to 64");
+    SamplePlace step = step_of(samples);
+    a.number("step u", step.u, field::sample_place, "fraction: from each sample to the next");
+    a.number("step v", step.v, field::sample_place, "fraction");
+    // 1 has the mantissa one half.
+    int exponent = exponent_of(share) + 1;
+    double mantissa = scale_by(share, -exponent);
+    a.word("share", mantissa, Format(1, formats.word_bits - 1), "mantissa, below 1: 1 / samples");
+    a.exponent("share exponent", exponent, Formats::exponent_bits, "its exponent");
+    if constexpr (Archive::reads) share = scale_by(mantissa, exponent);
+}
+
+/// A source behind its kind.
+template <typename Archive>
+void fields_of_source(Archive& a, Source& source, ViewerMessage& viewer, const Formats& formats) {
+    const SourceKind kind = source.kind;
+    if (is_area(kind)) {
+        fields_of_extent(a, source, formats);
+    } else if (kind != SourceKind::directional) {
+        fields_of_place(a, source.position, formats);
+    }
+    if (kind != SourceKind::point && kind != SourceKind::sphere)
+        vector(a, {"axis x", "axis y", "axis z"}, source.axis, formats.unit,
+               "unit: against the way of its light");
+    if (kind == SourceKind::spot) {
+        a.word("cut-off", source.cut_off, formats.unit, "unit: cosine at the edge of its cone");
+        fields_of_shine(a, source.falloff, formats, {"falloff exponent", "falloff fraction"});
+    }
+    if (is_area(kind)) fields_of_pattern(a, viewer.samples, viewer.share, formats);
+    vector(a, {"red", "green", "blue"}, source.intensity, formats.intensity, "intensity");
+}
+
+template <typename Archive>
+void field_of_kind(Archive& a, SourceKind& kind) {
+    int code = int(kind);
+    a.number("kind", code, field::source_kind,
+             "0 point, 1 directional, 2 spot, 3 rectangle, 4 triangle, 5 sphere");
+    if (code >= source_kinds)
+        throw std::length_error("load message: a source of kind " + std::to_string(code) +
+                                "; expected 0 to " + std::to_string(source_kinds - 1));
+    kind = SourceKind(code);
+}
+
+}  // namespace
+
 template <typename Archive>
 void LoadWire::fields(Archive& a, ViewerMessage& v) const {
-    a.type(LoadType::viewer);
+    const LoadType type = v.tells_kinds ? LoadType::viewer_of_kinds : LoadType::viewer;
+    v.tells_kinds = a.type(type) == LoadType::viewer_of_kinds;
     fields_of_place(a, v.eye, formats_);
     a.number("at infinity", v.at_infinity, 1, "1: the place has no meaning");
     constexpr const char* faces[] = {"beyond left",   "beyond right", "beyond top",
@@ -209,8 +300,8 @@ void LoadWire::fields(Archive& a, ViewerMessage& v) const {
     fields_of_level(a, v.level);
     a.count("sources", v.sources, int(v.sources.size()), field::source_count, "how many follow");
     for (Source& source : v.sources) {
-        fields_of_place(a, source.position, formats_);
-        vector(a, {"red", "green", "blue"}, source.intensity, formats_.intensity, "intensity");
+        if (v.tells_kinds) field_of_kind(a, source.kind);
+        fields_of_source(a, source, v, formats_);
     }
 }
 
@@ -224,7 +315,7 @@ void LoadWire::fields(Archive& a, Material& m) const {
     a.unsigned_word("Kd", m.diffuse, feature, "feature: share of diffuse light");
     a.unsigned_word("Ks", m.specular, feature, "feature: share of the highlight and the mirrored ray");
     a.unsigned_word("T", m.transmit, feature, "feature: share of the refracted ray");
-    fields_of_shine(a, m.shine, formats_);
+    fields_of_shine(a, m.shine, formats_, {"Shine exponent", "Shine fraction"});
     a.unsigned_word("index", m.ior, formats_.ior, "index of refraction");
     a.number("mirror", m.mirror, 1, "0: Ks makes a highlight only");
 }
@@ -338,10 +429,12 @@ Trapeze LoadWire::unpack_trapeze(const WireBits& bits, CornerIntensities& intens
 }
 Span LoadWire::unpack_span(const WireBits& bits) const { return unpacked<Span>(bits); }
 
-std::vector<WireField> LoadWire::layout(LoadType type) const {
+std::vector<WireField> LoadWire::layout(LoadType type, SourceKind kind) const {
     Namer namer;
     ViewerMessage viewer;
     viewer.sources.resize(1);
+    viewer.sources[0].kind = kind;
+    viewer.tells_kinds = type == LoadType::viewer_of_kinds;
     Material features;
     Polygon polygon;
     polygon.vertices.resize(1);
@@ -352,6 +445,7 @@ std::vector<WireField> LoadWire::layout(LoadType type) const {
     span.edge_count = 1;
     switch (type) {
         case LoadType::viewer:
+        case LoadType::viewer_of_kinds:
             fields(namer, viewer);
             break;
         case LoadType::features:

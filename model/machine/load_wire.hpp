@@ -10,7 +10,16 @@
 namespace raycell {
 
 /// Type codes of load messages, their first three bits. Loading is a phase of its own.
-enum class LoadType : std::uint8_t { viewer, features, polygon, surface, trapeze, span, end_of_scene };
+enum class LoadType : std::uint8_t {
+    viewer,  ///< all its sources are points
+    features,
+    polygon,
+    surface,
+    trapeze,
+    span,
+    end_of_scene,
+    viewer_of_kinds  ///< its sources begin with their kinds
+};
 
 /// What every cell latches before the objects come: the viewer, what lies beyond the cube, its levels, the
 /// sources.
@@ -22,6 +31,9 @@ struct ViewerMessage {
     int depth_levels = 1;
     double level = 1;
     std::vector<Source> sources;
+    bool tells_kinds = false;  ///< each source begins with its kind: unless all are points
+    int samples = 1;           ///< of each source that is an area
+    double share = 1;          ///< 1 / samples
 };
 
 /// The first message of a scene.
@@ -51,8 +63,9 @@ class LoadWire {
     Trapeze unpack_trapeze(const WireBits& bits, CornerIntensities& intensities) const;
     Span unpack_span(const WireBits& bits) const;
 
-    /// The layouts; of a message with edges, vertices or sources with one of them.
-    std::vector<WireField> layout(LoadType type) const;
+    /// The layouts; of a message with edges, vertices or sources with one of them, with `viewer_of_kinds`
+    /// one of `kind`.
+    std::vector<WireField> layout(LoadType type, SourceKind kind = SourceKind::point) const;
 
   private:
     template <typename... Parts>

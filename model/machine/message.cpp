@@ -56,10 +56,24 @@ void set_loading_bits(MessageBits& bits, const PictureSettings& picture, const F
     bits.end_of_scene = field::type;
     bits.viewer = field::type + formats.place_bits() + 1 + field::faces + 3 * word + field::level_count +
                   field::level_mantissa + Formats::exponent_bits + field::source_count;
-    bits.source = formats.place_bits() + 3 * word;
+    const int colour = 3 * word;
+    const int axis = 3 * word;
+    const int place = formats.place_bits();
+    const int mantissa = word + 12;
+    const int pattern = field::samples + 2 * field::sample_place + word + Formats::exponent_bits;
+    const int flat = place + 2 * 3 * mantissa + axis + pattern + colour;
+    bits.source = {place + colour, axis + colour, place + axis + word + formats.shine_bits + colour,
+                   flat,           flat,          place + mantissa + pattern + colour};
 }
 
 }  // namespace
+
+int MessageBits::setup(const SourceCounts& sources) const {
+    int bits = viewer + (sources.points() ? 0 : int(sources.sources()) * field::source_kind);
+    for (std::size_t kind = 0; kind < source.size(); ++kind)
+        bits += int(sources.of_kind[kind]) * source[kind];
+    return bits;
+}
 
 MessageBits message_bits(const PictureSettings& picture, const MachineSettings& machine,
                          const Formats& formats) {

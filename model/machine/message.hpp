@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "model/geometry/sources.hpp"
 #include "model/settings/settings.hpp"
 #include "model/tracing/ray.hpp"
 
@@ -41,9 +42,10 @@ struct MessageBits {
     int end_of_scene = 0;
     int longest_span() const { return span + span_edges * edge; }
     int longest_trapeze() const { return trapeze + 4 * edge; }
-    int setup(std::size_t sources) const { return viewer + int(sources) * source; }
+    /// Viewer and sources; if not all of these are points, each begins with its kind.
+    int setup(const SourceCounts& sources) const;
     int viewer = 0;
-    int source = 0;
+    std::array<int, std::size_t(source_kinds)> source{};  ///< by kind
 };
 /// Bits of the slot, or of the voxel, that an answer is for.
 int slot_address_bits(const PictureSettings& picture, const MachineSettings& machine);

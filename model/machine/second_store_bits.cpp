@@ -8,7 +8,7 @@
 namespace raycell {
 
 SecondStoreBits second_store_bits(const PictureSettings& picture, const MachineSettings& machine,
-                                  const Formats& formats, std::size_t sources, std::uint64_t store) {
+                                  const Formats& formats, const SourceCounts& sources, std::uint64_t store) {
     const MessageBits messages = message_bits(picture, machine, formats);
     const int longest = std::max({messages.longest_span(), messages.features, messages.setup(sources)});
     SecondStoreBits bits;

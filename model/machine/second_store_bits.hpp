@@ -19,6 +19,6 @@ struct SecondStoreBits {
 
 /// `store`: the most bits that a cell's memory of voxels holds, at any time of loading.
 SecondStoreBits second_store_bits(const PictureSettings& picture, const MachineSettings& machine,
-                                  const Formats& formats, std::size_t sources, std::uint64_t store);
+                                  const Formats& formats, const SourceCounts& sources, std::uint64_t store);
 
 }  // namespace raycell

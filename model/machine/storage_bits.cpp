@@ -50,11 +50,10 @@ int start_bits(const MachineSettings& machine) {
 int address_bits(const MessageBits& messages) { return messages.verdict - field::type; }
 
 /// Bits of the longest ray that a slot sends (`children`), or that is the cell's own ray (not `children`).
-int sent_ray_bits(const PictureSettings& picture, const MessageBits& messages, std::size_t sources,
-                  bool children) {
+int sent_ray_bits(const PictureSettings& picture, const MessageBits& messages, bool sources, bool children) {
     const bool shadow_rays =
         children ? picture.shadows != Shadows::precast : picture.shadows == Shadows::precast;
-    return std::max(messages.ray, sources > 0 && shadow_rays ? messages.shadow_ray : 0);
+    return std::max(messages.ray, sources && shadow_rays ? messages.shadow_ray : 0);
 }
 
 /// Bits of a counter of the cycles that a message of `bits` takes on a link.
@@ -65,7 +64,7 @@ int wire_bits(const MachineSettings& machine, int bits) {
 }  // namespace
 
 SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machine, const Formats& formats,
-                   std::size_t sources) {
+                   const SourceCounts& sources) {
     constexpr int children = 2;
     const int word = formats.word_bits;
     const int direction = 3 * word;
@@ -78,8 +77,9 @@ SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machin
     bits.children = children * (direction + 2 + 3 * word);
     bits.children += children * retry_bits(machine);
     const int each = picture.shadows == Shadows::per_hit ? 3 : picture.shadows == Shadows::memo ? 2 : 1;
-    bits.sources = each * int(sources);
-    bits.out = sent_ray_bits(picture, messages, sources, true) + decision_bits(formats) + field::age;
+    bits.sources = each * int(sources.lights);
+    bits.out =
+        sent_ray_bits(picture, messages, sources.sources() > 0, true) + decision_bits(formats) + field::age;
     return bits;
 }
 
@@ -99,6 +99,17 @@ int traversal_bits(const MachineSettings& machine, const Formats& formats, int r
     return nearest + crossing + run + counters + places + point + formats.accumulator.bits();
 }
 
+/// Registers of the shading unit for sources that are no points: what is sent this way; the samples' place in
+/// their pattern, their shift, two sums; of spheres the two axes of a disc.
+int light_bits(const SourceCounts& sources, const Formats& formats) {
+    const auto has = [&](SourceKind kind) { return sources.of_kind[std::size_t(kind)] > 0; };
+    const bool flat = has(SourceKind::rectangle) || has(SourceKind::triangle);
+    const int emission = flat || has(SourceKind::spot) ? formats.word_bits : 0;
+    const int samples = 2 * 2 * field::sample_place + 2 * (formats.word_bits + field::samples - 1);
+    return emission + (flat || has(SourceKind::sphere) ? samples : 0) +
+           (has(SourceKind::sphere) ? 2 * 3 * formats.word_bits : 0);
+}
+
 /// Bits of the shading unit's registers: job 3, its slot, counter over sources; three vectors (to the source,
 /// half way, mirrored), distance to the source, intensity so far, a sum. For a hit without a slot: the ray,
 /// the hit, and the reply on its way out.
@@ -113,7 +124,7 @@ int shading_bits(const SlotBits& slot, const MachineSettings& machine, const Mes
 }  // namespace
 
 RegisterBits register_bits(const PictureSettings& picture, const MachineSettings& machine,
-                           const Formats& formats, std::size_t sources) {
+                           const Formats& formats, const SourceCounts& sources) {
     const MessageBits messages = message_bits(picture, machine, formats);
     const BufferClasses classes = buffer_classes(machine.networks);
     const int ray = std::max(messages.ray, messages.shadow_ray);
@@ -126,16 +137,18 @@ RegisterBits register_bits(const PictureSettings& picture, const MachineSettings
         bits.credits += bits_for(machine.buffer_depth + 1);  // as many outputs as inputs
     });
     const bool precast = picture.shadows == Shadows::precast;
-    bits.own_ray = sent_ray_bits(picture, messages, sources, false) + 2 + retry_bits(machine) +
-                   start_bits(machine) + (precast ? field::voxel_index + bits_for(std::int64_t(sources)) : 0);
+    bits.own_ray = sent_ray_bits(picture, messages, sources.sources() > 0, false) + 2 + retry_bits(machine) +
+                   start_bits(machine) +
+                   (precast ? field::voxel_index + bits_for(std::int64_t(sources.lights)) : 0);
     bits.decisions = (ray_inputs + 1) * decision_bits(formats);
     bits.ages += 2 * age;
     bits.credits += 2 * side_count * wire_bits(machine, ray);  // those that come in and those that leave
     bits.outputs = side_count * std::max(ray, messages.intensity);
     bits.traversal = machine.traversal_units * traversal_bits(machine, formats, ray_inputs);
-    bits.shading = shading_bits(slot_bits(picture, machine, formats, sources), machine, messages, formats);
+    bits.shading = shading_bits(slot_bits(picture, machine, formats, sources), machine, messages, formats) +
+                   light_bits(sources, formats);
     bits.loading = machine.loading_units * kept_span_bits(messages);
-    bits.latches = messages.viewer + int(sources) * messages.source;  // the background is the viewer's
+    bits.latches = messages.setup(sources);  // the background is the viewer's
     return bits;
 }
 
@@ -144,7 +157,7 @@ int kept_span_bits(const MessageBits& messages) {
 }
 
 StorageBits storage_bits(const PictureSettings& picture, const MachineSettings& machine,
-                         const Formats& formats, std::size_t sources) {
+                         const Formats& formats, const SourceCounts& sources) {
     const MessageBits messages = message_bits(picture, machine, formats);
     const std::int64_t ray = std::max(messages.ray, messages.shadow_ray);
     const std::int64_t answer = messages.intensity;

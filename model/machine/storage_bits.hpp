@@ -19,7 +19,7 @@ struct SlotBits {
 
 /// Bits of one slot, for this number of sources.
 SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machine, const Formats& formats,
-                   std::size_t sources);
+                   const SourceCounts& sources);
 
 /// Registers beside buffers and slots, bits.
 struct RegisterBits {
@@ -37,7 +37,7 @@ struct RegisterBits {
     }
 };
 RegisterBits register_bits(const PictureSettings& picture, const MachineSettings& machine,
-                           const Formats& formats, std::size_t sources);
+                           const Formats& formats, const SourceCounts& sources);
 
 /// Bits of a span that waits in a cell for its voxel, with its object's features.
 int kept_span_bits(const MessageBits& messages);
@@ -52,6 +52,6 @@ struct StorageBits {
     std::int64_t total() const { return buffers() + ray_store + registers; }
 };
 StorageBits storage_bits(const PictureSettings& picture, const MachineSettings& machine,
-                         const Formats& formats, std::size_t sources);
+                         const Formats& formats, const SourceCounts& sources);
 
 }  // namespace raycell

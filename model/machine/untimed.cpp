@@ -46,7 +46,7 @@ UntimedMachine::UntimedMachine(const CellScene& scene, const PictureSettings& se
 }
 
 StorageCounts UntimedMachine::storage() const {
-    const VoxelBits each = voxel_bits(settings_, context_.arithmetic.formats(), context_.sources.size());
+    const VoxelBits each = voxel_bits(settings_, context_.arithmetic.formats(), context_.lights.rays.size());
     StorageCounts counts;
     for (const CellStore& cell : cells_) counts.add(cell, each);
     return counts;
@@ -92,7 +92,7 @@ void UntimedMachine::precast() {
         for (int x = 0; x < frame.width; ++x) {
             CellStore& store = cell({x, y});
             for (std::uint32_t v = 0; v < store.voxels.size(); ++v) {
-                for (std::size_t s = 0; s < context_.sources.size(); ++s) {
+                for (std::size_t s = 0; s < context_.lights.rays.size(); ++s) {
                     const Ray ray = voxel_shadow_ray(context_, store, v, s, RayKind::precast, x, y);
                     count_ray(rays_, ray.kind);
                     if (trace(ray, x, y, nullptr).blocked) store.lit[v] &= ~(std::uint64_t(1) << s);
@@ -188,7 +188,7 @@ UntimedMachine::Answer UntimedMachine::answer_hit(const Ray& ray, const CellHit&
     const HitSetup setup = set_up_hit(context_, store, ray, hit, at.x, at.y);
     if (ray.kind == RayKind::primary) record_first_hit(*pixel, setup, voxel.polygon);
     std::uint64_t lit = 0;
-    for (std::size_t s = 0; s < context_.sources.size(); ++s) {
+    for (std::size_t s = 0; s < context_.lights.rays.size(); ++s) {
         const std::uint64_t bit = std::uint64_t(1) << s;
         if ((setup.facing & bit) && source_visible(ray, hit, setup, s, at, pixel)) lit |= bit;
     }

@@ -59,6 +59,43 @@ MicroProgram edge_program(const MicroSetting& setting);
 /// "cell y", nx to nz. Out: lx to lz, cosine, reach.
 MicroProgram source_program(const MicroSetting& setting);
 
+/// N·L of a directional source: view_source(). In: ax to az (its axis), nx to nz. Out: cosine.
+MicroProgram facing_program(const MicroSetting& setting);
+
+/// What a spot sends this way beside its power: the emission of view_source(). In: ax to az (its axis), lx to
+/// lz (the direction to it), cut-off, falloff (Operators::exponent_word). Out: emission. For a power that is
+/// `rounded`, also in: power. Without a power it is what a flat area sends.
+MicroProgram emission_program(const MicroSetting& setting);
+
+/// shift_of() a voxel. In: polygon, x, y. Out: u, v.
+MicroProgram shift_program(const MicroSetting& setting);
+
+/// The next sample of a flat area and its place: sample_of(). In: u, v (of the one before, not shifted),
+/// "step u", "step v", "shift u", "shift v", fold (1: a triangle), cx to cz, "u x" to "u z", "v x" to "v z"
+/// (mantissas of one exponent). Out: u, v, sx to sz (mantissas of that exponent).
+MicroProgram sample_program(const MicroSetting& setting);
+
+/// The axes of the disc that a sphere is from a point. In: wx to wz (the way to its middle, mantissas of an
+/// accumulator's bits). Out: tx to tz, bx to bz.
+MicroProgram disc_axes_program(const MicroSetting& setting);
+
+/// The next sample of a sphere and its place: sample_of(). In: as of `sample`, tx to tz, bx to bz, radius, cx
+/// to cz (mantissas of one exponent). Out: u, v, sx to sz.
+MicroProgram disc_program(const MicroSetting& setting);
+
+/// What a lit sample adds to its source's sums, beside the power. In: cosine, lx to lz, rx to rz (the
+/// mirrored ray), ks, shine, diffuse, highlight (the sums). Out: diffuse, highlight. For a power that is
+/// `rounded`, also in: power.
+MicroProgram lit_sample_program(const MicroSetting& setting);
+
+/// The means of a source's samples. In: diffuse, highlight (the sums), share, "share exponent" (1 / samples =
+/// share · 2^it). Out: "mean diffuse", "mean highlight".
+MicroProgram mean_program(const MicroSetting& setting);
+
+/// A spot's shares in local_intensity(). In: emission, cosine, highlight (the power of R·L). Out: cosine,
+/// highlight.
+MicroProgram emitted_program(const MicroSetting& setting);
+
 /// The start of a child: set_direction(), its place off the surface, its weight. In: dx to dz, px to pz (the
 /// hit), nx to nz (the polygon's plane), weight (the parent's), share. Out: x to z, front (1: it goes to the
 /// plane's front), weight, mx, ex, my, ey (1/|d| = m · 2^e, 0 for 0).

@@ -14,7 +14,10 @@ constexpr int edges = 3;         ///< of a trapeze or a span: up to four
 constexpr int faces = 6;         ///< of the cube, a bit each
 constexpr int vertices = 16;     ///< of a polygon
 constexpr int source_count = 7;  ///< up to 64
-constexpr int level_count = 16;  ///< depth levels less one
+constexpr int source_kind = 3;
+constexpr int samples = 7;        ///< of a source, up to 64
+constexpr int sample_place = 16;  ///< a fraction of the pattern's side
+constexpr int level_count = 16;   ///< depth levels less one
 constexpr int level_mantissa = 16;
 constexpr int voxel_index = 10;  ///< up to 1024 voxels in a cell
 

@@ -59,6 +59,16 @@ struct CostTable {
     std::uint32_t per_lit_source;   ///< diffuse, R·L; plus its power
     std::uint32_t mirrored;         ///< direction for highlights where no reflected child has it; plus a root
     std::uint32_t light_again;      ///< a lit source's direction, which a slot does not keep; plus a root
+    // Sources that are no points.
+    std::uint32_t source_facing;    ///< N·L of a directional source, instead of source_view
+    std::uint32_t source_emission;  ///< what is sent this way, beside source_view; of a spot plus a power
+    std::uint32_t emitted;          ///< a lit light's share of N·L and of its highlight: spots, flat areas
+    std::uint32_t sample_shift;     ///< of a hit's samples
+    std::uint32_t sample_place;     ///< a sample's place on a flat area
+    std::uint32_t disc_axes;        ///< of a sphere, once for all its samples; plus two roots
+    std::uint32_t disc_place;       ///< a sample's place on a sphere; plus a root
+    std::uint32_t per_lit_sample;   ///< adds a lit sample to its source's, beside its power
+    std::uint32_t sample_mean;      ///< of a source with lit samples, beside per_lit_source
     // Operators, by method (--reciprocal, --root, --power).
     std::uint32_t reciprocal_newton;   ///< look-up, interpolation, two multiplications
     std::uint32_t reciprocal_table;    ///< look-up and interpolation

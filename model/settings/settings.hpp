@@ -53,6 +53,7 @@ struct PictureSettings {
     HitTest hit = HitTest::edge;
     Normals normals = Normals::linear;
     Shadows shadows = Shadows::per_hit;
+    int source_samples = 8;  ///< shadow rays from a hit to each source that is an area, 1..64
     ExteriorMode exterior = ExteriorMode::host;
     int max_depth = 4;              ///< generations after the primary ray, 0..62
     double min_weight = 1.0 / 256;  ///< a secondary ray that weighs less is not sent; 0: no cut

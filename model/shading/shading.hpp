@@ -7,6 +7,7 @@
 #include "model/geometry/placement.hpp"
 #include "model/geometry/scene.hpp"
 #include "model/numbers/arithmetic.hpp"
+#include "model/shading/lights.hpp"
 
 namespace raycell {
 
@@ -16,21 +17,28 @@ struct ShadePoint {
     dvec3 direction{0, 0, 1};  ///< of the arriving ray, unit
     dvec3 normal{0, 0, -1};    ///< unit, turned towards the arriving ray
     bool entering = true;      ///< the ray came from the front (the side that the stored normal points to)
+    SamplePlace shift;         ///< of the samples of sources
 };
 
 /// Normalises a field's normal and turns it towards the ray. A vanishing normal falls back to the plane's.
 ShadePoint shade_point(const dvec3& position, const dvec3& direction, const dvec3& raw_normal,
                        const dvec3& plane_normal, const Arithmetic& arithmetic = exact_arithmetic());
 
-/// Direction and distance to a source, and whether the normal faces it (then a shadow ray is worth sending).
+/// Direction and distance to a source, and whether the normal faces it and it shines this way (then a shadow
+/// ray is worth sending).
 struct SourceView {
     dvec3 direction{0, 0, 1};
-    double distance = 0;
-    double cosine = 0;  ///< N·L
-    bool faces() const { return cosine > 0; }
+    double distance = 0;  ///< infinite for a directional one
+    double cosine = 0;    ///< N·L
+    double emission = 1;  ///< share of its intensity that goes this way, 0..1
+    bool faces() const { return cosine > 0 && emission > 0; }
 };
 SourceView view_source(const ShadePoint& point, const Source& source,
                        const Arithmetic& arithmetic = exact_arithmetic());
+
+/// The same of a light: of its source, or of a sample of that.
+SourceView view_light(const ShadePoint& point, const Lights& lights, std::size_t light,
+                      const Arithmetic& arithmetic = exact_arithmetic());
 
 /// Mirror direction of the arriving ray, unit.
 dvec3 reflect_direction(const ShadePoint& point, const Arithmetic& arithmetic = exact_arithmetic());
@@ -47,8 +55,12 @@ inline double transmit_share(const Material& m) { return m.transmit; }
 dvec3 transmit_direction(const ShadePoint& point, double ior,
                          const Arithmetic& arithmetic = exact_arithmetic());
 
-/// Local part of the intensity: ambient 0.1·Kd·C, and I·(Kd·C·(N·L) + Ks·(R·L)^Shine) for each source whose
-/// bit in `lit` is set.
+/// Local part of the intensity: ambient 0.1·Kd·C, and e·I·(Kd·C·(N·L) + Ks·(R·L)^Shine) for each light whose
+/// bit in `lit` is set, e its emission; a sample counts as its share of a source.
+dvec3 local_intensity(const ShadePoint& point, const Material& material, const Lights& lights,
+                      std::uint64_t lit, const Arithmetic& arithmetic = exact_arithmetic());
+
+/// The same of sources without extent.
 dvec3 local_intensity(const ShadePoint& point, const Material& material, const Source* sources,
                       std::size_t source_count, std::uint64_t lit,
                       const Arithmetic& arithmetic = exact_arithmetic());

@@ -1,7 +1,6 @@
 #include "model/tracing/tracing.hpp"
 
 #include <algorithm>
-#include <bitset>
 #include <cmath>
 #include <stdexcept>
 
@@ -84,6 +83,44 @@ Material hold(const Material& material, const Arithmetic& arithmetic) {
     return held;
 }
 
+namespace {
+
+/// Rounds what an area's points are sums of to mantissas of one exponent.
+void hold_area(Source& held, const Source& source, const Arithmetic& arithmetic) {
+    const auto largest = [](const dvec3& a, const dvec3& b) { return glm::max(glm::abs(a), glm::abs(b)); };
+    const dvec3& corner = source.position;
+    dvec3 most = largest(largest(corner, dvec3(source.radius)), largest(source.edge_u, source.edge_v));
+    for (const double side : {-1, 1}) {
+        most = largest(most, corner + side * source.radius);
+        most = largest(most, corner + 0.5 * (source.edge_u + source.edge_v) +
+                                 side * 0.5 * (source.edge_u - source.edge_v));
+    }
+    most = largest(most, corner + source.edge_u + source.edge_v);
+    const Format mantissa(1, arithmetic.formats().word_bits + 11);
+    const int e = held.exponent = arithmetic.formats().place_exponent(most);
+    const auto word = [&](double x) { return scale_by(mantissa.hold(scale_by(x, -e)), e); };
+    const auto words = [&](const dvec3& v) { return dvec3(word(v.x), word(v.y), word(v.z)); };
+    held.position = words(source.position);
+    held.edge_u = words(source.edge_u);
+    held.edge_v = words(source.edge_v);
+    held.radius = word(source.radius);
+}
+
+}  // namespace
+
+Source hold(const Source& source, const Arithmetic& arithmetic) {
+    if (arithmetic.exact()) return source;
+    const Formats& f = arithmetic.formats();
+    Source held = source;
+    held.position = arithmetic.hold_place(source.position);
+    if (is_area(source.kind)) hold_area(held, source, arithmetic);
+    held.intensity = arithmetic.hold(f.intensity, source.intensity);
+    held.axis = arithmetic.hold(f.unit, source.axis);
+    held.cut_off = f.unit.hold(source.cut_off);
+    held.falloff = arithmetic.hold_shine(source.falloff);
+    return held;
+}
+
 Context::Context(const CellScene& placed, const PictureSettings& picture_settings,
                  const SyntheticTraffic* synthetic)
     : scene(placed),
@@ -97,10 +134,9 @@ Context::Context(const CellScene& placed, const PictureSettings& picture_setting
     }
     const Formats& f = arithmetic.formats();
     for (const Material& material : placed.objects) objects.push_back(hold(material, arithmetic));
-    for (const Source& source : placed.sources) {
-        sources.push_back(
-            {arithmetic.hold_place(source.position), arithmetic.hold(f.intensity, source.intensity)});
-    }
+    std::vector<Source> sources;
+    for (const Source& source : placed.sources) sources.push_back(hold(source, arithmetic));
+    lights = Lights(std::move(sources), settings.source_samples, arithmetic);
     background = arithmetic.hold(f.intensity, placed.background);
     eye = arithmetic.hold_place(placed.frame.eye);
     depth = arithmetic.hold(f.depth, placed.frame.depth);
@@ -144,21 +180,6 @@ Visit visit_cell(const CellStore& store, const Ray& ray, const Context& context,
     return visit;
 }
 
-std::uint32_t visit_cycles(const Visit& visit, const PictureSettings& settings, const CostTable& costs) {
-    const Comparisons& made = visit.comparisons;
-    const HitTest test = settings.hit;
-    // Every test has a division, for the distance at which the ray meets the plane or enters the run.
-    const std::uint32_t own = test == HitTest::plane  ? costs.compare_plane
-                              : test == HitTest::mask ? costs.compare_mask
-                              : test == HitTest::edge ? costs.compare_edge
-                                                      : costs.enter_run;
-    const std::uint32_t run = test == HitTest::depth ? costs.compare_depth : costs.compare_interval;
-    const std::uint32_t reciprocal = costs.reciprocal(settings.numbers.operators);
-    const std::uint32_t leaving = visit.leaves && costs.leave_cube > 0 ? costs.leave_cube + reciprocal : 0;
-    return costs.walk_step + leaving + made.runs * run + made.tests * (own + reciprocal) +
-           made.edges * costs.per_edge;
-}
-
 Beyond beyond_face(const Context& context, Face face) {
     const bool work = context.settings.exterior == ExteriorMode::host && context.scene.beyond[face];
     return work ? Beyond::exterior : Beyond::nothing;
@@ -195,11 +216,34 @@ ExteriorRequest request_at_border(const Context& context, const Ray& ray, const 
 
 }  // namespace
 
+namespace {
+
+/// The way from a place to a source along a ray that goes there.
+double distance_to(const Source& source, const dvec3& origin, const dvec3& direction) {
+    const dvec3 way = source.position - origin;
+    switch (source.kind) {
+        case SourceKind::directional:
+            return infinity;
+        case SourceKind::rectangle:
+        case SourceKind::triangle:  // where it meets the plane
+            return glm::dot(way, source.axis) / glm::dot(direction, source.axis);
+        case SourceKind::sphere:  // the disc lies across the way to the middle
+            return glm::dot(way, direction);
+        case SourceKind::point:
+        case SourceKind::spot:
+            break;
+    }
+    return glm::length(way);
+}
+
+}  // namespace
+
 ExteriorRequest exterior_request(const Context& context, const Ray& ray, const Crossing& crossing, int x,
                                  int y) {
     ExteriorRequest request = request_at_border(context, ray, crossing, x, y);
     if (is_shadow(ray.kind) && !context.arithmetic.exact()) {
-        request.reach = glm::distance(request.origin, context.scene.sources[ray.child].position);
+        const Source& source = context.scene.sources[context.lights.rays[ray.child].source];
+        request.reach = distance_to(source, request.origin, request.direction);
     }
     return request;
 }
@@ -235,9 +279,10 @@ HitSetup set_up_hit(const Context& context, const CellStore& store, const Ray& r
     setup.local = point_at(ray, hit.t, arithmetic);
     setup.point = shade_point(setup.local + dvec3(x, y, 0), ray.direction,
                               normal_at(voxel, setup.local, arithmetic), voxel.plane.n, arithmetic);
-    for (std::size_t s = 0; s < context.sources.size(); ++s) {
-        if (view_source(setup.point, context.sources[s], arithmetic).faces()) {
-            setup.facing |= std::uint64_t(1) << s;
+    setup.point.shift = shift_of(voxel.polygon, x, y);
+    for (std::size_t light = 0; light < context.lights.rays.size(); ++light) {
+        if (view_light(setup.point, context.lights, light, arithmetic).faces()) {
+            setup.facing |= std::uint64_t(1) << light;
         }
     }
     const auto worth = [&](double share) {
@@ -256,14 +301,14 @@ HitSetup set_up_hit(const Context& context, const CellStore& store, const Ray& r
 }
 
 bool may_wait(const Context& context, const Ray& ray, std::uint32_t object) {
-    if (context.settings.shadows != Shadows::precast && !context.sources.empty()) return true;
+    if (context.settings.shadows != Shadows::precast && !context.lights.sources.empty()) return true;
     const Material& material = context.objects[object];
     return ray.generation < context.settings.max_depth &&
            (mirror_share(material) > 0 || transmit_share(material) > 0);
 }
 
 int waiting_generations(const Context& context) {
-    const bool shadows = context.settings.shadows != Shadows::precast && !context.sources.empty();
+    const bool shadows = context.settings.shadows != Shadows::precast && !context.lights.sources.empty();
     return context.settings.max_depth + (shadows ? 1 : 0);
 }
 
@@ -302,33 +347,33 @@ Ray refracted_ray(const Context& context, const CellStore& store, const Ray& par
 }
 
 Ray shadow_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
-               const HitSetup& setup, std::size_t source, int x, int y) {
-    Ray ray = child_of(parent, RayKind::shadow, unsigned(source), x, y);
+               const HitSetup& setup, std::size_t light, int x, int y) {
+    Ray ray = child_of(parent, RayKind::shadow, unsigned(light), x, y);
     if (context.traffic) {
         context.traffic->start_child(ray, parent, context, store, setup);
         return ray;
     }
-    const SourceView view = view_source(setup.point, context.sources[source], context.arithmetic);
+    const SourceView view = view_light(setup.point, context.lights, light, context.arithmetic);
     set_direction(ray, view.direction, context.arithmetic);
     ray.reach = context.arithmetic.hold_reach(view.distance);
     leave_surface(ray, context, setup.local, store.voxels[hit.voxel]);
     return ray;
 }
 
-Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32_t voxel, std::size_t source,
+Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32_t voxel, std::size_t light,
                      RayKind kind, int x, int y) {
     Ray parent;
     parent.id = ray_id(std::uint64_t(y) * std::uint64_t(context.scene.frame.width) + std::uint64_t(x), voxel);
-    Ray ray = child_of(parent, kind, unsigned(source), x, y);
+    Ray ray = child_of(parent, kind, unsigned(light), x, y);
     ray.slot = voxel;
     const Arithmetic& arithmetic = context.arithmetic;
+    ShadePoint point;
     const dvec3 local = store.voxels[voxel].point;
-    const dvec3 way = arithmetic.way(local + dvec3(x, y, 0), context.sources[source].position);
-    dvec3 direction{0, 0, 1};
-    double distance = 0;
-    if (way != dvec3(0)) direction = arithmetic.normalise(way, distance);
-    ray.reach = arithmetic.hold_reach(distance);
-    set_direction(ray, direction, arithmetic);
+    point.position = local + dvec3(x, y, 0);
+    point.shift = shift_of(store.voxels[voxel].polygon, x, y);
+    const SourceView view = view_light(point, context.lights, light, arithmetic);
+    ray.reach = arithmetic.hold_reach(view.distance);
+    set_direction(ray, view.direction, arithmetic);
     leave_surface(ray, context, local, store.voxels[voxel]);
     return ray;
 }
@@ -336,41 +381,10 @@ Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32
 dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t object, std::uint64_t lit,
                 const dvec3& reflected, const dvec3& refracted) {
     const Material& material = context.objects[object];
-    const dvec3 local = context.traffic
-                            ? context.traffic->local_intensity(setup, lit & setup.facing)
-                            : local_intensity(setup.point, material, context.sources.data(),
-                                              context.sources.size(), lit & setup.facing, context.arithmetic);
+    const dvec3 local = context.traffic ? context.traffic->local_intensity(setup, lit & setup.facing)
+                                        : local_intensity(setup.point, material, context.lights,
+                                                          lit & setup.facing, context.arithmetic);
     return combine_intensity(local, material, reflected, refracted, context.arithmetic);
-}
-
-std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs) {
-    const OperatorSettings& operators = context.settings.numbers.operators;
-    const std::uint32_t root = costs.root(operators);
-    // With the reciprocals that a ray carries.
-    const std::uint32_t start = costs.ray_start + 2 * costs.reciprocal(operators);
-    std::uint32_t cycles = costs.shade_setup + root;  // a voxel's own normal is made unit, too
-    if (context.settings.normals == Normals::linear) cycles += costs.normal_linear;
-    cycles += std::uint32_t(context.sources.size()) * (costs.source_view + root);
-    if (context.settings.shadows == Shadows::per_hit) {
-        cycles += std::uint32_t(std::bitset<64>(setup.facing).count()) * start;
-    }
-    if (setup.reflects) cycles += costs.reflect + root + start;
-    if (setup.refracts) cycles += costs.refract + costs.reciprocal(operators) + 2 * root + start;
-    return cycles;
-}
-
-std::uint32_t shade_cycles(const Context& context, const HitSetup& setup, std::uint32_t object,
-                           std::uint64_t lit, bool waited, const CostTable& costs) {
-    if (lit == 0) return costs.local_intensity;
-    const OperatorSettings& operators = context.settings.numbers.operators;
-    const auto direction = [&](std::uint32_t cycles) {
-        return cycles > 0 ? cycles + costs.root(operators) : 0;
-    };
-    const bool mirrors = context.objects[object].specular > 0 && !setup.reflects;
-    const std::uint32_t each =
-        costs.per_lit_source + costs.power(operators) + (waited ? direction(costs.light_again) : 0);
-    return costs.local_intensity + (mirrors ? direction(costs.mirrored) : 0) +
-           std::uint32_t(std::bitset<64>(lit).count()) * each;
 }
 
 Pixel display_cell(const Context& context, const CellStore& store, int x, int y) {

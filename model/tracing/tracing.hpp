@@ -16,7 +16,7 @@ struct Context {
     const PictureSettings& settings;
     Arithmetic arithmetic;
     std::vector<Material> objects;
-    std::vector<Source> sources;
+    Lights lights;
     dvec3 background{0, 0, 0};
     dvec3 eye{0, 0, 0};
     double depth = 1;                           ///< of the cube, cell widths
@@ -24,13 +24,17 @@ struct Context {
     const SyntheticTraffic* traffic = nullptr;  ///< set: hits are drawn, not found in the scene (traffic.hpp)
 
     /// All arguments must outlive the context. Throws std::invalid_argument for number settings that
-    /// Arithmetic rejects, and for settings that synthetic traffic does not support: see traffic_picture().
+    /// Arithmetic rejects, for more lights than bits, and for settings that synthetic traffic does not
+    /// support: see traffic_picture().
     Context(const CellScene& placed, const PictureSettings& picture_settings,
             const SyntheticTraffic* synthetic = nullptr);
 };
 
 /// Rounds features to words, as the cells latch them.
 Material hold(const Material& material, const Arithmetic& arithmetic);
+
+/// Rounds a source to words, as the cells latch it.
+Source hold(const Source& source, const Arithmetic& arithmetic);
 
 /// The outcome of a ray's test in a cell.
 struct Visit {
@@ -92,7 +96,7 @@ class ExteriorTracer {
 struct HitSetup {
     ShadePoint point;
     dvec3 local{0, 0, 0};      ///< hit point relative to the cell
-    std::uint64_t facing = 0;  ///< bit per source that the normal faces
+    std::uint64_t facing = 0;  ///< bit per light that the normal faces and that shines this way
     bool reflects = false;
     bool refracts = false;  ///< has a child for the share T, mirrored on total internal reflection
     dvec3 reflected{0, 0, 0};
@@ -111,16 +115,16 @@ int waiting_generations(const Context& context);
 Ray primary_ray(const Context& context, int x, int y);
 
 /// Children of a ray that hit: the reflected (child 0), the refracted (child 1), a shadow ray (child =
-/// source).
+/// light).
 Ray reflected_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
                   const HitSetup& setup, int x, int y);
 Ray refracted_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
                   const HitSetup& setup, int x, int y);
 Ray shadow_ray(const Context& context, const CellStore& store, const Ray& parent, const CellHit& hit,
-               const HitSetup& setup, std::size_t source, int x, int y);
+               const HitSetup& setup, std::size_t light, int x, int y);
 
-/// A ray from a voxel's own point to a source (memo, precast); ray.slot is the voxel.
-Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32_t voxel, std::size_t source,
+/// A ray from a voxel's own point to a light (memo, precast); ray.slot is the voxel.
+Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32_t voxel, std::size_t light,
                      RayKind kind, int x, int y);
 
 /// The intensity of a hit, from the answers to its children.
@@ -129,7 +133,7 @@ dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t obj
 
 /// Cycles of the shading unit.
 std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs);
-/// `lit`: sources that face the surface and whose light arrives; `waited`: the hit was in a slot.
+/// `lit`: lights that face the surface and whose light arrives; `waited`: the hit was in a slot.
 std::uint32_t shade_cycles(const Context& context, const HitSetup& setup, std::uint32_t object,
                            std::uint64_t lit, bool waited, const CostTable& costs);
 

@@ -70,9 +70,12 @@ class Trials {
         const CellScene placed =
             place_scene(scene_, frame_, settings_, chord_errors_at(scene_, frame_, level, least_));
         const bool outside = settings_.exterior == ExteriorMode::host;
-        const TruthRenderer itself(placed, {settings_.max_depth, settings_.min_weight});
-        const TruthRenderer polygons(placed, {settings_.max_depth, settings_.min_weight, false,
-                                              TruthOf::polygons, outside ? &itself : nullptr});
+        TruthSettings tree{settings_.max_depth, settings_.min_weight};
+        tree.source_samples = settings_.source_samples;
+        const TruthRenderer itself(placed, tree);
+        tree.of = TruthOf::polygons;
+        tree.beyond = outside ? &itself : nullptr;
+        const TruthRenderer polygons(placed, tree);
         const TruthRenderer& truth = of == TruthOf::scene ? itself : polygons;
         const int columns = std::min(frame_.width, most_each_way);
         const int rows = std::min(frame_.height, most_each_way);

@@ -94,7 +94,10 @@ void forecast_loading(const CellScene& scene, Forecast& sum) {
 class Sampler {
   public:
     Sampler(const CellScene& scene, const PictureSettings& settings, const TruthRenderer& truth)
-        : scene_(scene), settings_(settings), truth_(truth) {}
+        : scene_(scene),
+          settings_(settings),
+          truth_(truth),
+          lights_(scene.sources, settings.source_samples, exact_arithmetic()) {}
 
     double hops = 0;
 
@@ -105,10 +108,13 @@ class Sampler {
         follow({ray.origin, ray.direction, no_polygon}, 0, 1);
     }
     /// Follows a precast ray from a point of a polygon to a source; an unblocked one sends no answer.
-    void precast(const dvec3& point, const Polygon& polygon, const Source& source) {
-        const dvec3 way = source.position - point;
-        const double distance = glm::length(way);
-        if (distance > 0) shadow({point, way / distance, polygon.id}, distance, true);
+    void precast(const dvec3& point, const Polygon& polygon) {
+        ShadePoint from;
+        from.position = point;
+        for (std::size_t light = 0; light < lights_.rays.size(); ++light) {
+            const SourceView view = view_light(from, lights_, light);
+            if (view.distance > 0) shadow({point, view.direction, polygon.id}, view.distance, true);
+        }
     }
 
   private:
@@ -142,6 +148,7 @@ class Sampler {
     const CellScene& scene_;
     const PictureSettings& settings_;
     const TruthRenderer& truth_;
+    Lights lights_;
     std::uint64_t rays_ = 0;
 };
 
@@ -212,8 +219,8 @@ void Sampler::shade(const TruthHit& hit, const dvec3& direction, int generation,
     const Material& material = scene_.objects[truth_.object_of(hit)];
     const ShadePoint point = truth_.point_at(hit, direction);
     if (settings_.shadows != Shadows::precast) {
-        for (const Source& source : scene_.sources) {
-            const SourceView view = view_source(point, source);
+        for (std::size_t light = 0; light < lights_.rays.size(); ++light) {
+            const SourceView view = view_light(point, lights_, light);
             if (view.faces()) shadow({point.position, view.direction, hit.polygon}, view.distance, false);
         }
     }
@@ -275,7 +282,7 @@ double forecast_precast(const CellScene& scene, const PictureSettings& settings,
         const dvec3& vertex = polygon.vertices[std::size_t(taken) % polygon.vertices.size()];
         const double share = std::sqrt(std::fmod(0.5 + 0.6180339887498949 * taken, 1.0));
         const dvec3 point = glm::clamp(middle + share * (vertex - middle), dvec3(0), scene.frame.cube().high);
-        for (const Source& source : scene.sources) sampler.precast(point, polygon, source);
+        sampler.precast(point, polygon);
     }
     return sampler.hops * sum / taken;
 }

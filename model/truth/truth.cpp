@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "model/truth/area_light.hpp"
 #include "model/truth/rows.hpp"
 
 namespace raycell {
@@ -34,6 +35,7 @@ struct TruthRenderer::Tracer {
     dvec3 trace(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, Rank rank,
                 double started = 0);
     dvec3 shade(const ShadePoint& point, const TruthHit& hit, Rank rank);
+    dvec3 local(const ShadePoint& point, const Material& material, std::uint32_t polygon);
     std::uint64_t lit_sources(const ShadePoint& point, std::uint32_t polygon);
     bool sends(double share, Rank rank) const {
         return share > 0 && rank.generation < limits.max_depth && rank.weight * share >= limits.min_weight;
@@ -84,11 +86,12 @@ dvec3 TruthRenderer::Tracer::leave(const dvec3& origin, const dvec3& direction, 
                                             rank.weight, &counts, -t);
 }
 
-/// One bit per source that the normal faces and nothing hides.
+/// One bit per source without extent that the normal faces and nothing hides.
 std::uint64_t TruthRenderer::Tracer::lit_sources(const ShadePoint& point, std::uint32_t polygon) {
     const std::vector<Source>& sources = truth.scene_.sources;
     std::uint64_t lit = 0;
     for (std::size_t i = 0; i < sources.size(); ++i) {
+        if (is_area(sources[i].kind)) continue;
         const SourceView view = view_source(point, sources[i]);
         if (!view.faces()) continue;
         ++counts.shadow;
@@ -97,11 +100,24 @@ std::uint64_t TruthRenderer::Tracer::lit_sources(const ShadePoint& point, std::u
     return lit;
 }
 
+dvec3 TruthRenderer::Tracer::local(const ShadePoint& point, const Material& material, std::uint32_t polygon) {
+    const std::vector<Source>& sources = truth.scene_.sources;
+    dvec3 sum = local_intensity(point, material, sources.data(), sources.size(), lit_sources(point, polygon));
+    for (const Source& source : sources) {
+        if (!is_area(source.kind)) continue;
+        sum += area_light(point, material, source, limits.source_samples,
+                          [&](const dvec3& direction, double distance) {
+                              ++counts.shadow;
+                              return !blocked(point.position, direction, polygon, distance);
+                          });
+    }
+    return sum;
+}
+
 dvec3 TruthRenderer::Tracer::shade(const ShadePoint& point, const TruthHit& hit, Rank rank) {
     const CellScene& scene = truth.scene_;
     const Material& material = scene.objects[truth.surfaces_.object(hit.index)];
-    const dvec3 local = local_intensity(point, material, scene.sources.data(), scene.sources.size(),
-                                        lit_sources(point, hit.polygon));
+    const dvec3 own = local(point, material, hit.polygon);
     dvec3 reflected(0), refracted(0);
     const double mirrored = mirror_share(material);
     const double transmitted = transmit_share(material);
@@ -118,7 +134,7 @@ dvec3 TruthRenderer::Tracer::shade(const ShadePoint& point, const TruthHit& hit,
         refracted = trace(point.position, bends ? onward : reflect_direction(point), hit.polygon,
                           {rank.generation + 1, rank.weight * transmitted});
     }
-    return combine_intensity(local, material, reflected, refracted);
+    return combine_intensity(own, material, reflected, refracted);
 }
 
 dvec3 TruthRenderer::Tracer::trace(const dvec3& origin, const dvec3& direction, std::uint32_t exclude,
@@ -164,6 +180,7 @@ void TruthRenderer::Tracer::primary(double x, double y, Pixel& pixel) {
 TruthRenderer::TruthRenderer(const CellScene& scene, const TruthSettings& settings)
     : scene_(scene), settings_(settings), surfaces_(scene, settings.of), index_(surfaces_) {
     if (settings.max_depth < 0) throw std::invalid_argument("max_depth is negative");
+    if (settings.source_samples < 1) throw std::invalid_argument("source_samples is below 1");
     if (scene.sources.size() > max_sources)
         throw std::invalid_argument(std::to_string(scene.sources.size()) + " sources, at most " +
                                     std::to_string(max_sources) + " are allowed");

@@ -29,6 +29,7 @@ struct TruthSettings {
     /// Goes on with rays where they leave the cube; null: nobody, the cube is no border. With it, a truth of
     /// polygons is what a machine of exact arithmetic and this exterior renders.
     const TruthRenderer* beyond = nullptr;
+    int source_samples = 256;  ///< shadow rays of a hit to each source that is an area, >= 1
 };
 
 struct TruthHit {
@@ -61,7 +62,7 @@ class TruthRenderer {
 
     /// Keeps a reference: the scene must outlive the renderer and stay unchanged.
     /// Throws std::invalid_argument for what SurfaceIndex rejects, an object that doesn't exist, more than
-    /// max_sources sources, or a negative max_depth.
+    /// max_sources sources, a negative max_depth, or no samples.
     explicit TruthRenderer(const CellScene& scene, const TruthSettings& settings = {});
     explicit TruthRenderer(const CellScene&&, const TruthSettings& = {}) = delete;
 

@@ -62,8 +62,8 @@ class Reader {
             word = *text;
             // An empty string is the default of file names. For other options it is an error, which the
             // option's own check finds.
-            if (word.empty() && (key == "view" || key == "scene" || key == "frames" || key == "save-array" ||
-                                 key == "load-array"))
+            if (word.empty() && (key == "view" || key == "sources" || key == "scene" || key == "frames" ||
+                                 key == "save-array" || key == "load-array"))
                 return;
         } else if (const auto whole = node.value_exact<std::int64_t>()) {
             word = std::to_string(*whole);

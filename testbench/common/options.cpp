@@ -271,6 +271,8 @@ void add_placement_options(OptionTable& table, RenderOptions& options) {
     table.text("scene", options.scene, "FILE", "scene: .nff or .obj");
     table.positional("file", options.scene, "the same; has precedence over --scene");
     table.text("view", options.view, "FILE.nff", "take background, view and sources from this file");
+    table.text("sources", options.sources, "FILE.toml",
+               "light sources that replace those of the scene, or are added to them");
     table.text("frames", options.frames, "FILE",
                "frames in a row: a list of views and scenes, one a line; all of them, or that of --frame");
     table.number("frame", options.frame, 0, int(max_frames),
@@ -297,6 +299,12 @@ void add_scene_options(OptionTable& table, RenderOptions& options) {
     table.number("min-weight", p.min_weight, 0.0, 1.0, "share of a pixel below which a ray is not sent");
     table.group("Results");
     table.flag("quiet", options.quiet, "no progress, no summary");
+}
+
+void add_truth_samples(OptionTable& table, RenderOptions& options) {
+    table.group("Truth");
+    table.number("truth-samples", options.truth_samples, 1, 65536,
+                 "the truth's own samples of each source that is an area");
 }
 
 void add_link_options(OptionTable& table, MachineSettings& m) {
@@ -352,25 +360,6 @@ void add_granularity_options(OptionTable& table, RenderOptions& options) {
                 "these cells are modules, with ports, all others in tiles; may come several times");
 }
 
-void add_watch_options(OptionTable& table, RenderOptions& options) {
-    table.group("Looking inside");
-    table.rays("watch-ray", options.watch_rays,
-               "prints the life of the ray with this id and of its children; may come several times");
-    table.cells("watch-pixel", options.watch_pixels,
-                "prints the lives of all rays of a pixel's tree; may come several times");
-}
-
-void add_recording_options(OptionTable& table, RenderOptions& options) {
-    table.group("Looking inside");
-    table.number("film", options.film, 0, 2000,
-                 "frames of the run at most, from 4 on, in PREFIX.film.json: coarse maps of messages, voxels "
-                 "and slots over "
-                 "time, which the report page shows; 0: none");
-    table.flag(
-        "rays", options.rays,
-        "a line for every ray, in PREFIX.rays.csv: where it came from, where it ended, its cycles and hops");
-}
-
 void add_voxel_options(OptionTable& table, PictureSettings& p) {
     table.group("Voxels and hit test");
     table.number("depth", p.depth_levels, 1, 65536, "depth levels of the cube");
@@ -383,10 +372,11 @@ void add_voxel_options(OptionTable& table, PictureSettings& p) {
                  "what a cell compares a ray with");
     table.choice("normals", p.normals, {{"linear", Normals::linear}, {"voxel", Normals::voxel}},
                  "normals interpolated at the hit, or one per voxel");
-    table.choice(
-        "shadows", p.shadows,
-        {{"per-hit", Shadows::per_hit}, {"precast", Shadows::precast}, {"memo", Shadows::memo}},
-        "a ray per hit and source; a bit per voxel and source before tracing; the same when first hit");
+    table.choice("shadows", p.shadows,
+                 {{"per-hit", Shadows::per_hit}, {"precast", Shadows::precast}, {"memo", Shadows::memo}},
+                 "a ray per hit and source, or sample of it; a bit per voxel and such a ray before tracing; "
+                 "the same when "
+                 "first hit");
     table.number("voxel-capacity", p.voxel_capacity, 0, 1000000, "voxels that a cell can hold; 0: unlimited");
     table.choice("display", p.display, {{"phong", Display::phong}, {"gouraud", Display::gouraud}},
                  "shading of --stage load");
@@ -433,6 +423,8 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     table.table_size("power-table", o.power_table, "the same, of each of its two tables; 0: 32 at 20 bits");
     add_communication_options(table, m);
     table.group("Rays");
+    table.number("source-samples", p.source_samples, 1, int(max_sources),
+                 "shadow rays from a hit, or a voxel, to each source that is an area");
     table.number("normal-offset", p.normal_offset, -1.0, 1.0,
                  "start of secondary rays off their polygon, cells; negative: what suits the arithmetic");
     table.group("Rays beyond the cube");
@@ -450,6 +442,7 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     table.group("Truth");
     table.flag("truth", options.truth, "render the truth too and report the accuracy");
     table.flag("clip-truth", options.clip_truth, "clip the truth to the cube");
+    add_truth_samples(table, options);
 }
 
 void add_array_options(OptionTable& table, RenderOptions& options) {
@@ -458,33 +451,6 @@ void add_array_options(OptionTable& table, RenderOptions& options) {
                "keep the loaded array, for other traces of this scene and size");
     table.text("load-array", options.load_array, "FILE",
                "start with an array that --save-array kept, instead of loading it again");
-}
-
-void add_waveform_options(OptionTable& table, RenderOptions& options) {
-    table.group("Looking inside");
-    ProbeOptions& p = options.probes;
-    table.cells("probe", p.cells,
-                "waveforms of these cells: PREFIX.vcd, PREFIX.gtkw; may come several times");
-    table.window("window", p.window, "cycles of the run that --probe shows, both ends included");
-    table.flag("vcd-on-deadlock", p.on_deadlock,
-               "if the run deadlocks: waveforms of the knot's cells, by running once more");
-    table.number("vcd-last", p.last, std::int64_t(0), std::int64_t(1) << 62,
-                 "cycles before the deadlock formed from which on --vcd-on-deadlock shows it");
-    table.number("vcd-mark", p.mark, std::int64_t(-1), std::int64_t(1) << 62,
-                 "cycle with GTKWave's marker, at which the view opens; -1: the first one shown");
-    table.number("vcd-limit", p.limit_mb, std::int64_t(1), std::int64_t(1) << 40,
-                 "size at which a dump ends, MB; the run goes on");
-}
-
-void add_probe_options(OptionTable& table, RenderOptions& options) {
-    add_waveform_options(table, options);
-    table.cells("golden", options.golden,
-                "messages into and out of these cells, for cell_tb and the test of a cell of your own: "
-                "PREFIX.golden_X_Y.txt; may come several times");
-    table.choice("golden-part", options.golden_part,
-                 {{"cell", GoldenPart::cell}, {"traversal", GoldenPart::traversal}},
-                 "what --golden records: all messages, or the traversal unit's tests alone, with the cell's "
-                 "voxels: PREFIX.traversal_X_Y.txt");
 }
 
 void add_render_options(OptionTable& table, RenderOptions& options) {

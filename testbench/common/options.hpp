@@ -105,8 +105,9 @@ struct RenderOptions {
     std::string scene;
     std::string prefix = "out";
     std::string view;
-    std::string frames;  ///< file of a list of frames; empty: none
-    int frame = 0;       ///< of the list, from 1; 0: all
+    std::string sources;  ///< file of light sources; empty: the scene's own
+    std::string frames;   ///< file of a list of frames; empty: none
+    int frame = 0;        ///< of the list, from 1; 0: all
     PictureSettings picture;
     MachineSettings machine;
     Engine engine = Engine::timed;
@@ -115,6 +116,7 @@ struct RenderOptions {
     bool quiet = false;
     bool truth = false;
     bool clip_truth = false;
+    int truth_samples = 256;  ///< of the truth, of each source that is an area
     std::vector<std::uint64_t> watch_rays;
     std::vector<CellRange> watch_pixels;
     ProbeOptions probes;
@@ -132,6 +134,8 @@ struct RenderOptions {
 void add_placement_options(OptionTable& table, RenderOptions& options);
 /// The options that render and truth share: placement, files, ray tree.
 void add_scene_options(OptionTable& table, RenderOptions& options);
+/// The truth's own samples of sources.
+void add_truth_samples(OptionTable& table, RenderOptions& options);
 /// What a cell makes of a span: depth levels, hit test, normals, shadow bits, capacity, intensities.
 void add_voxel_options(OptionTable& table, PictureSettings& picture);
 /// Arithmetic, its words and their rounding.

@@ -198,7 +198,7 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                             {"trapeze", messages.longest_trapeze()},
                             {"surface", messages.surface},
                             {"edge", messages.edge}};
-    const std::size_t sources = scene.sources.size();
+    const SourceCounts sources(scene.sources, picture.source_samples);
     const StorageBits stored_bits = storage_bits(picture, machine, formats, sources);
     json["storage_bits"] = {{"ray_buffers", stored_bits.ray_buffers},
                             {"answer_buffers", stored_bits.answer_buffers},

@@ -55,6 +55,7 @@ std::vector<double> chosen_chord_errors(const RenderOptions& options, const Scen
 void spare_inputs(const RenderOptions& options, const OutputSet& outputs) {
     if (!options.scene.empty()) spare(outputs, options.scene, "scene");
     if (!options.view.empty()) spare(outputs, options.view, "view");
+    if (!options.sources.empty()) spare(outputs, options.sources, "sources");
     if (!options.frames.empty()) spare(outputs, options.frames, "list of frames");
     if (!options.load_array.empty()) spare(outputs, options.load_array, "loaded array");
     if (!options.config.empty() && !same_file(options.config, options.prefix + ".toml"))
@@ -69,7 +70,9 @@ Scene read_frame(const RenderOptions& options, const FrameLine& frame, const Out
     spare(outputs, path, "scene");
     std::optional<std::filesystem::path> view;
     if (!options.view.empty()) view = options.view;
-    Scene scene = load_scene(path, view, diagnostics);
+    std::optional<std::filesystem::path> sources;
+    if (!options.sources.empty()) sources = options.sources;
+    Scene scene = load_scene(path, view, diagnostics, sources);
     for (const std::string& library : scene.libraries) spare(outputs, library, "material library");
     scene.view = view_of(frame, *scene.view, options.frames);
     return scene;

@@ -141,6 +141,13 @@ std::vector<std::string> Packing::layouts() const {
     if (!wire_) return lines;
     for (const auto& [name, type] : types) lines.push_back(layout_text(name, wire_->layout(type)));
     for (const auto& [name, type] : load_types) lines.push_back(layout_text(name, load_wire_->layout(type)));
+    const SourceCounts counts(context_.lights.sources, 1);
+    for (int i = 0; i < source_kinds && !counts.points(); ++i) {
+        const SourceKind kind = SourceKind(i);
+        if (counts.of_kind[std::size_t(i)] > 0)
+            lines.push_back(layout_text((std::string("setup_") + name_of(kind)).c_str(),
+                                        load_wire_->layout(LoadType::viewer_of_kinds, kind)));
+    }
     return lines;
 }
 

@@ -44,6 +44,24 @@ class Line {
             fail(error.what());
         }
     }
+    int exponent() {
+        const std::string& token = next();
+        int value = 0;
+        const char* const end = token.data() + token.size();
+        const auto [stop, error] = std::from_chars(token.data(), end, value);
+        if (stop != end || error != std::errc() || value < -32 || value > 31)
+            fail("'" + token.substr(0, 60) + "': expected an exponent from -32 to 31");
+        return value;
+    }
+    /// The kind of a source: a point if its word is missing.
+    SourceKind kind() {
+        for (int i = 1; i < source_kinds; ++i) {
+            if (at_ == line_.tokens.size() || line_.tokens[at_] != name_of(SourceKind(i))) continue;
+            ++at_;
+            return SourceKind(i);
+        }
+        return SourceKind::point;
+    }
     double hexadecimal() { return number(Words::read_hexadecimal); }
     double word(const Words& words, const Format& format) {
         return number([&](const std::string& t) { return words.read_word(format, t); });
@@ -91,6 +109,72 @@ Material read_object(Line& line, const Words& words) {
     m.ior = line.word(words, f.ior);
     m.mirror = line.whole(1) == 1;
     return m;
+}
+
+/// Mantissas of one exponent: the place, the edges or the radius; then the exponent.
+std::string extent_text(const Words& words, const Source& source) {
+    const Format mantissa(1, words.formats().word_bits + 11);
+    const auto text = [&](const dvec3& v) {
+        return vector_text(words, mantissa,
+                           {scale_by(v.x, -source.exponent), scale_by(v.y, -source.exponent),
+                            scale_by(v.z, -source.exponent)});
+    };
+    const std::string extent = source.kind == SourceKind::sphere
+                                   ? " " + words.word(mantissa, scale_by(source.radius, -source.exponent))
+                                   : text(source.edge_u) + text(source.edge_v);
+    return text(source.position) + extent + " " + std::to_string(source.exponent);
+}
+
+void read_extent(Line& line, const Words& words, Source& source) {
+    const Format mantissa(1, words.formats().word_bits + 11);
+    source.position = line.vector(words, mantissa);
+    if (source.kind == SourceKind::sphere) {
+        source.radius = line.word(words, mantissa);
+    } else {
+        source.edge_u = line.vector(words, mantissa);
+        source.edge_v = line.vector(words, mantissa);
+    }
+    source.exponent = line.exponent();
+    const double scale = scale_by(1, source.exponent);
+    source.position *= scale, source.edge_u *= scale, source.edge_v *= scale, source.radius *= scale;
+}
+
+/// A point is its place and its intensity; another source begins with the word for its kind.
+std::string source_text(const Words& words, const Source& source) {
+    const Formats& f = words.formats();
+    std::string text;
+    if (source.kind != SourceKind::point) text += std::string(" ") + name_of(source.kind);
+    if (is_area(source.kind))
+        text += extent_text(words, source);
+    else if (source.kind != SourceKind::directional)
+        text += place_text(words, source.position);
+    if (source.kind != SourceKind::point && source.kind != SourceKind::sphere)
+        text += vector_text(words, f.unit, source.axis);
+    if (source.kind == SourceKind::spot)
+        text +=
+            " " + words.word(f.unit, source.cut_off) + " " + words.floating(f.shine_bits - 4, source.falloff);
+    return text + vector_text(words, f.intensity, source.intensity);
+}
+
+Source read_source(Line& line, const Words& words) {
+    const Formats& f = words.formats();
+    Source source;
+    source.kind = line.kind();
+    if (is_area(source.kind)) {
+        read_extent(line, words, source);
+    } else if (source.kind != SourceKind::directional) {
+        const int bits = f.word_bits + 12;
+        const double x = line.floating(words, bits), y = line.floating(words, bits);
+        source.position = {x, y, line.floating(words, bits)};
+    }
+    if (source.kind != SourceKind::point && source.kind != SourceKind::sphere)
+        source.axis = line.vector(words, f.unit);
+    if (source.kind == SourceKind::spot) {
+        source.cut_off = line.word(words, f.unit);
+        source.falloff = line.floating(words, f.shine_bits - 4);
+    }
+    source.intensity = line.vector(words, f.intensity);
+    return source;
 }
 
 /// Reads the lines of the head: first the cell's place, links and frame, which its number formats depend on,
@@ -171,10 +255,7 @@ class SetupReader {
             scene.objects.push_back(read_object(line, words));
         } else if (name == "source") {
             if (scene.sources.size() == max_sources) line.fail("expected 64 at most");
-            const int bits = words.formats().word_bits + 12;
-            const double x = line.floating(words, bits), y = line.floating(words, bits);
-            const dvec3 position(x, y, line.floating(words, bits));
-            scene.sources.push_back({position, line.vector(words, words.formats().intensity)});
+            scene.sources.push_back(read_source(line, words));
         } else if (name == "format") {
             const std::string& of = line.next();
             const std::string& is = line.next();
@@ -245,9 +326,8 @@ std::string setup_text(const CellSetup& setup, const Context& context, const std
         text << "layout " << layout << '\n';
     text << "background" << vector_text(words, words.formats().intensity, context.background) << '\n';
     for (const Material& object : context.objects) text << "object" << object_text(words, object) << '\n';
-    for (const Source& source : context.sources) {
-        text << "source" << place_text(words, source.position)
-             << vector_text(words, words.formats().intensity, source.intensity) << '\n';
+    for (const Source& source : context.lights.sources) {
+        text << "source" << source_text(words, source) << '\n';
     }
     text << "begin\n";
     return text.str();

@@ -140,6 +140,7 @@ bool load(Machine& machine, const LoadPlan& plan, LoadWatch& watch, const Render
 int run(Options& options, const OptionTable& table) {
     RenderOptions& o = options.run;
     o.picture.stage = RunStage::load;
+    o.picture.source_samples = 1;  // nothing that is loaded depends on it
     OutputSet outputs(o.prefix);
     if (!o.prefix.empty()) {
         check_place("--output", o.prefix);

@@ -95,7 +95,7 @@ class Planner {
     LoadPlan run() {
         plan_.voxel_cycles = costs_.load_voxel(picture_.hit);
         plan_.loading_units = machine_.loading_units;
-        broadcast(Kind::setup, 0, bits_.setup(scene_.sources.size()));
+        broadcast(Kind::setup, 0, bits_.setup(SourceCounts(scene_.sources, 1)));
         const std::vector<Polygon>& polygons = scene_.polygons;
         for (std::size_t begin = 0; begin < polygons.size();) {
             std::size_t end = begin;

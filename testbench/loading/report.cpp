@@ -228,11 +228,12 @@ Json report(const Loading& l) {
     json["messages"] = {{"sent", r.counters.loads_sent},
                         {"delivered", r.counters.loads_delivered},
                         {"hops", r.counters.load_hops}};
-    json["message_bits"] = {{"polygon", bits.polygon},          {"vertex", bits.vertex},
-                            {"features", bits.features},        {"setup", bits.setup(l.scene.sources.size())},
-                            {"surface", bits.surface},          {"trapeze", bits.longest_trapeze()},
-                            {"span", bits.longest_span()},      {"edge", bits.edge},
-                            {"end_of_scene", bits.end_of_scene}};
+    json["message_bits"] = {
+        {"polygon", bits.polygon},          {"vertex", bits.vertex},
+        {"features", bits.features},        {"setup", bits.setup(SourceCounts(l.scene.sources, 1))},
+        {"surface", bits.surface},          {"trapeze", bits.longest_trapeze()},
+        {"span", bits.longest_span()},      {"edge", bits.edge},
+        {"end_of_scene", bits.end_of_scene}};
     for (std::size_t i = 0; i < unit_groups.size(); ++i)
         json["stages"][unit_groups[i]] = stage(l, UnitGroup(i));
     for (std::size_t i = 0; i < link_groups.size(); ++i)

@@ -11,6 +11,7 @@ TrialList traversal_trials(const MicroSetting& setting);  ///< the walk, the run
 TrialList ray_trials(const MicroSetting& setting);        ///< a hit's setup, sources, new rays, answers
 TrialList loading_trials(const MicroSetting& setting);    ///< a span's way, voxels
 TrialList shading_trials(const MicroSetting& setting);    ///< operators, directions, intensities
+TrialList source_trials(const MicroSetting& setting);     ///< sources that are no points
 /// Every rung with either kind of normals, which the cost table does not tell apart.
 TrialList loading_variants(const MicroSetting& setting);
 

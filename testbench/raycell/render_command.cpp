@@ -192,7 +192,8 @@ const std::vector<std::string> truth_suffixes = {".truth.exr", ".truth.png", ".d
 Json render_truth(const RenderOptions& options, const CellScene& scene, const Picture& picture,
                   OutputSet& outputs) {
     const CellScene clipped = options.clip_truth ? clip_scene(scene) : scene;
-    const TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
+    TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
+    tree.source_samples = options.truth_samples;
     const bool progress = shows_progress(options);
     const TruthRenderer::Progress tell = [&](int done, int all) {
         stop_if_interrupted();
@@ -201,11 +202,9 @@ Json render_truth(const RenderOptions& options, const CellScene& scene, const Pi
     const TruthRenderer truth(clipped, tree);
     const Picture itself = truth.render(0, tell);
     const bool exterior = options.picture.exterior == ExteriorMode::host && !options.clip_truth;
-    const Picture polygons = clipped.curved.empty()
-                                 ? itself
-                                 : TruthRenderer(clipped, {tree.max_depth, tree.min_weight, false,
-                                                           TruthOf::polygons, exterior ? &truth : nullptr})
-                                       .render(0, tell);
+    tree.of = TruthOf::polygons;
+    tree.beyond = exterior ? &truth : nullptr;
+    const Picture polygons = clipped.curved.empty() ? itself : TruthRenderer(clipped, tree).render(0, tell);
     if (progress) end_progress();
     Json accuracy = report(picture, polygons);
     // Which polygon is hit first is no question against the scene.
@@ -229,8 +228,9 @@ void add_sample(const RenderOptions& options, const RunResult& result, const Cel
     if (!truth || !finished || options.picture.stage == RunStage::load) return;
     constexpr int pixels = 512;
     const bool exterior = options.picture.exterior == ExteriorMode::host;
-    const TruthRenderer polygons(scene, {options.picture.max_depth, options.picture.min_weight, false,
-                                         TruthOf::polygons, exterior ? truth : nullptr});
+    const TruthRenderer polygons(
+        scene, {options.picture.max_depth, options.picture.min_weight, false, TruthOf::polygons,
+                exterior ? truth : nullptr, options.truth_samples});
     const SampledAccuracy sample = sample_accuracy(result.picture, scene.frame, polygons, pixels);
     losses["sample"] = {{"pixels", sample.pixels}, {"psnr_db", sample.psnr_db}};
     constexpr double good = 45;  // dB; the default machine gives 60 to 90 on scenes that fit its words
@@ -372,7 +372,8 @@ int run(const RenderOptions& options, const OptionTable& table, int jobs) {
     std::unique_ptr<ClassicalExterior> tracer;
     if (exterior || (traces && options.engine == Engine::timed)) {  // the forecast needs it, too
         whole = std::make_unique<TruthRenderer>(
-            scene, TruthSettings{options.picture.max_depth, options.picture.min_weight});
+            scene, TruthSettings{options.picture.max_depth, options.picture.min_weight, false, TruthOf::scene,
+                                 nullptr, options.picture.source_samples});
     }
     if (exterior) tracer = std::make_unique<ClassicalExterior>(scene, *whole);
     const double wall_placing = seconds_since(start);

@@ -87,7 +87,8 @@ class ArrayModel : public SizeModel {
     StorageCounts storage(const SizeSetting& setting) const override {
         const PictureSettings picture = picture_of(options_, setting);
         const Formats formats(picture.numbers.word_bits, picture.numbers.rounding, extent_of(scene_.frame));
-        return loaded(setting).storage(voxel_bits(picture, formats, scene_.sources.size()));
+        return loaded(setting).storage(
+            voxel_bits(picture, formats, SourceCounts(scene_.sources, picture.source_samples).lights));
     }
 
     SizeTrial run(const SizeSetting& setting) const override {
@@ -249,17 +250,16 @@ int run(const SizeOptions& options, const OptionTable& table, const CLI::App& ap
         const FrameGoal goal{options.goal, std::uint64_t(options.frame_cycles)};
         return size_frames(options, goal, !scene.curved.empty(), std::max(1, generations), outputs);
     }
-    const TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
+    TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
+    tree.source_samples = options.truth_samples;
     const bool exterior = options.picture.exterior == ExteriorMode::host;
     const CellScene clipped = exterior ? CellScene() : clip_scene(scene);
     const CellScene& seen = exterior ? scene : clipped;
     const TruthRenderer truth(seen, tree);
     const Picture exact = truth.render();
-    const Picture polygons = seen.curved.empty()
-                                 ? exact
-                                 : TruthRenderer(seen, {tree.max_depth, tree.min_weight, false,
-                                                        TruthOf::polygons, exterior ? &truth : nullptr})
-                                       .render();
+    tree.of = TruthOf::polygons;
+    tree.beyond = exterior ? &truth : nullptr;
+    const Picture polygons = seen.curved.empty() ? exact : TruthRenderer(seen, tree).render();
     const ClassicalExterior outside(seen, truth);
     const ExteriorTracer* const tracer = exterior ? &outside : nullptr;
 

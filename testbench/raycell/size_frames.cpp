@@ -86,7 +86,8 @@ class RunModel : public FrameModel {
         base.truth = true;
         base.clip_truth = options.picture.exterior == ExteriorMode::none;
         configuration_ = to_toml(render_configuration(base));
-        identity_ = digest_of(program_) + digest_of(options.scene) + digest_of(options.view);
+        identity_ = digest_of(program_) + digest_of(options.scene) + digest_of(options.view) +
+                    digest_of(options.sources);
         write_text(base_file(), configuration_);
     }
 

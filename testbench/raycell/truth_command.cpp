@@ -46,8 +46,8 @@ int run(const TruthOptions& options, const OptionTable& table) {
     }
     CellScene scene = read_and_place(options, outputs);
     if (options.clip) scene = clip_scene(scene);
-    const TruthRenderer truth(scene,
-                              {options.picture.max_depth, options.picture.min_weight, false, options.of});
+    const TruthRenderer truth(scene, {options.picture.max_depth, options.picture.min_weight, false,
+                                      options.of, nullptr, options.truth_samples});
     if (options.count > 0) return print_counts(options, truth);
     const auto start = std::chrono::steady_clock::now();
     const Picture picture = truth.render(0, progress_for(options));
@@ -80,6 +80,7 @@ Command add_truth_command(CLI::App& program) {
     add_scene_options(*table, *options);
     table->choice("truth-of", options->of, {{"scene", TruthOf::scene}, {"polygons", TruthOf::polygons}},
                   "what is rendered: spheres and cones as such, or the polygons that the machine loads");
+    add_truth_samples(*table, *options);
     table->flag("clip", options->clip, "clip the scene to the cube");
     table->number(
         "count", options->count, 0, 8193,

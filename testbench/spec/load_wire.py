@@ -1,7 +1,10 @@
 """Load messages as the wires carry them: setup, features, span, end_of_scene."""
 
+from rays import sample_steps
 from words import Value, ZERO, bits_to
 
+SOURCE_KINDS = ["point", "directional", "spot", "rectangle", "triangle", "sphere"]
+VIEWER_OF_KINDS = 7
 LOAD_TYPES = {"setup": 0, "features": 1, "span": 5, "end_of_scene": 6}
 FIELD_OF_NORMALS = ["n0x", "n0y", "n0z", "nux", "nuy", "nuz", "nvx", "nvy", "nvz"]
 CENTRE = ["ncx", "ncy", "ncz", "dncx", "dncy", "dncz"]
@@ -20,6 +23,17 @@ class LoadWire:
         colour = [("red", W), ("green", W), ("blue", W)]
         self.viewer = ([("type", 3)] + self.place + [("at_infinity", 1)] + [("beyond_" + face, 1) for face in FACES] +
                        colour + [("levels", 16), ("level", 16), ("level_exponent", 6), ("sources", 7)])
+        axis = [("axis_x", W), ("axis_y", W), ("axis_z", W)]
+        cone = [("cut-off", W), ("falloff_exponent", 5), ("falloff_fraction", f.shine_bits - 5)]
+        kind = [("kind", 3)]
+        self.tells_kinds = any(source.kind != "point" for source in S.sources)
+        extent = [("place_exponent", 6)] + self.place[:3]
+        edges = [(name, W + 12) for name in ("u_x", "u_y", "u_z", "v_x", "v_y", "v_z")]
+        pattern = [("samples", 7), ("step_u", 16), ("step_v", 16), ("share", W), ("share_exponent", 6)]
+        flat = kind + extent + edges + axis + pattern + colour
+        self.of_kind = {"point": kind + self.place + colour, "directional": kind + axis + colour,
+                        "spot": kind + self.place + axis + cone + colour, "rectangle": flat, "triangle": flat,
+                        "sphere": kind + extent + [("radius", W + 12)] + pattern + colour}
         self.source = self.place + colour
         share = f.feature.bits - 1
         self.features = ([("type", 3)] + [(name, share) for name in ("red", "green", "blue", "Kd", "Ks", "T")] +
@@ -44,12 +58,17 @@ class LoadWire:
 
     def layouts(self):
         """As in a record's head: with one source, one edge."""
-        return {"setup": self.viewer + self.source, "features": self.features, "span": self.layout_of_span(1),
-                "end_of_scene": [("type", 3)]}
+        layouts = {"setup": self.viewer + self.source, "features": self.features, "span": self.layout_of_span(1),
+                   "end_of_scene": [("type", 3)]}
+        layouts.update(("setup_" + kind, self.viewer + source) for kind, source in self.of_kind.items())
+        return layouts
+
+    def layout_of_source(self, source):
+        return self.of_kind[source.kind] if self.tells_kinds else self.source
 
     def length(self, item):
         if item.kind == "setup":
-            return width(self.viewer) + len(self.S.sources) * width(self.source)
+            return width(self.viewer) + sum(width(self.layout_of_source(source)) for source in self.S.sources)
         if item.kind == "span":
             return width(self.layout_of_span(len(item.edges)))
         return width(self.features) if item.kind == "features" else 3
@@ -72,21 +91,22 @@ class LoadWire:
             seen = [v["red"], v["green"], v["blue"], v["Kd"], v["Ks"], v["T"], v["index"], v["mirror"]]
             o = S.objects[number]
             known = [c.raw for c in o.colour] + [o.kd.raw, o.ks.raw, o.t.raw, o.ior.raw, int(o.mirror)]
-            digits = f.shine_bits - 5
-            shine = Value((1 << digits) + v["Shine_fraction"], digits + 9 - v["Shine_exponent"])
-            if seen != known or (shine if v["Shine_exponent"] else ZERO) != o.shine:
+            shine = floating_of(v["Shine_exponent"], v["Shine_fraction"], f.shine_bits - 5)
+            if seen != known or shine != o.shine:
                 raise ValueError(f"features are {v}, the head says otherwise")
         elif kind == "setup":
             v = unpacked(self.viewer, bits)
             self.check_viewer(v)
             at = width(self.viewer)
             for source in S.sources:
-                self.check_source(unpacked(self.source, bits, at), source)
-                at += width(self.source)
+                layout = self.layout_of_source(source)
+                self.check_source(unpacked(layout, bits, at), source)
+                at += width(layout)
 
     def check_viewer(self, v):
         S = self.S
-        told = {"at_infinity": int(S.eye is None), "levels": S.option["depth"] - 1, "sources": len(S.sources)}
+        told = {"type": VIEWER_OF_KINDS if self.tells_kinds else 0, "at_infinity": int(S.eye is None),
+                "levels": S.option["depth"] - 1, "sources": len(S.sources)}
         told.update(zip(("beyond_" + face for face in FACES), map(int, S.faces)))
         told.update(zip(("red", "green", "blue"), (c.raw for c in S.background)))
         wrong = [name for name in told if v[name] != told[name]]
@@ -98,15 +118,42 @@ class LoadWire:
             raise ValueError(f"the setup message has another {', '.join(wrong)} than the head")
 
     def check_source(self, v, source):
-        seen, known = self.place_of(v), source.position
-        colour = [v["red"], v["green"], v["blue"]]
-        if any(a != b for a, b in zip(seen, known)) or colour != [c.raw for c in source.intensity]:
+        f = self.S.formats
+        right = [v["red"], v["green"], v["blue"]] == [c.raw for c in source.intensity]
+        right &= v.get("kind", 0) == SOURCE_KINDS.index(source.kind)
+        if source.position:
+            right &= not any(a != b for a, b in zip(self.place_of(v), source.position))
+        if source.axis:
+            right &= [signed(v["axis_" + axis], f.W) for axis in "xyz"] == [c.raw for c in source.axis]
+        if source.kind == "spot":
+            falloff = floating_of(v["falloff_exponent"], v["falloff_fraction"], f.shine_bits - 5)
+            right &= v["cut-off"] == source.cut_off.raw and falloff == source.falloff
+        if source.is_area():
+            right &= self.is_right_area(v, source)
+        if not right:
             raise ValueError(f"the setup message has the source {v}, the head another")
+
+    def is_right_area(self, v, source):
+        S, bits = self.S, self.S.formats.W + 12
+        words = {"u": source.edge_u, "v": source.edge_v} if source.is_flat() else {}
+        seen = {name: [v[f"{name}_{axis}"] for axis in "xyz"] for name in words}
+        scale = bits - 1 - source.exponent
+        right = all(Value(signed(w, bits), scale) == c for name in words for w, c in zip(seen[name], words[name]))
+        if source.kind == "sphere":
+            right &= Value(signed(v["radius"], bits), scale) == source.radius
+        samples = S.option["source-samples"]
+        share = Value(v["share"], S.formats.W - 1 - signed(v["share_exponent"], 6))
+        return (right and signed(v["place_exponent"], 6) == source.exponent and share == S.share and
+                [v["samples"], v["step_u"], v["step_v"]] == [samples, *sample_steps(samples)])
 
     def place_of(self, v):
         bits = self.S.formats.W + 12
         frac = bits - 1 - signed(v["place_exponent"], 6)
         return [Value(signed(v[axis], bits), frac) for axis in ("place_x", "place_y", "place_z")]
+
+
+def floating_of(exponent, fraction, digits):
+    return Value((1 << digits) + fraction, digits + 9 - exponent) if exponent else ZERO
 
 
 def components(*vectors, axes="xyz"):

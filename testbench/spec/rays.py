@@ -1,5 +1,7 @@
 """What every cell knows, rays, the walk, and what becomes of a tested ray."""
 
+from math import gcd
+
 from hits import nearest_hit
 from operators import Operators, normalise
 from words import ZERO, Formats, Value, clamp, exact, hold_place, way_to
@@ -10,6 +12,7 @@ STEP = [(1, 0), (0, 1), (-1, 0), (0, -1)]
 FRONT, BACK = 4, 5
 FACE_OF_SIDE = [1, 3, 0, 2]                         # left, right, top, bottom, front, back
 KINDS = ["primary", "reflected", "refracted", "shadow", "memo", "precast"]
+AREAS = ("rectangle", "triangle", "sphere")
 SHADOWS = ("shadow", "memo", "precast")
 ANSWERS = {"shared": 0, "split": 1, "half": 2, "quadrant": 4}      # class of answers; the last one of all
 
@@ -32,6 +35,15 @@ class Machine:
         self.normal_offset = f.unit.hold(exact(offset) if offset >= 0 else f.normal_offset)
         self.min_weight = exact(option["min-weight"])
         self.background, self.objects, self.sources = None, [], []
+        self.lights = []                            # (source, u, v): one for each shadow ray of a hit
+
+    def set_sources(self, sources):
+        self.sources, samples = sources, self.option["source-samples"]
+        step_u, step_v = sample_steps(samples)
+        for source in sources:
+            for k in range(samples if source.is_area() else 1):
+                self.lights.append((source, k * step_u & 0xffff, k * step_v & 0xffff))
+        self.share = share_of(samples, self.formats)
 
     def cost(self, name):
         option, costs = self.option, self.option["cost"]
@@ -66,8 +78,35 @@ class Material:
 
 
 class Source:
-    def __init__(self, position, intensity):
-        self.position, self.intensity = position, intensity
+    def __init__(self, kind, position, intensity):
+        self.kind, self.position, self.intensity = kind, position, intensity
+        self.axis = self.cut_off = self.falloff = None      # of some kinds
+        self.edge_u = self.edge_v = self.radius = self.exponent = None
+
+    def is_area(self):
+        return self.kind in AREAS
+
+    def is_flat(self):
+        return self.kind in ("rectangle", "triangle")
+
+
+def sample_steps(n):
+    """Of the lattices with a point in every row and column, the one whose nearest points are farthest apart."""
+    def gap(g):
+        return min([min(k, n - k) ** 2 + min(g * k % n, n - g * k % n) ** 2 for k in range(1, n)], default=0)
+    generator = max((g for g in range(1, n + 1) if gcd(g, n) == 1), key=gap)
+    return [((k * 65536 + n // 2) // n) & 0xffff for k in (1, generator % n)]
+
+
+def share_of(n, f):
+    """1 / n: a mantissa below 1 of W - 1 bits."""
+    if n == 1:
+        return f.one
+    exponent = -((n - 1).bit_length() - 1)
+    digits = f.W - 1 - exponent
+    quotient, rest = divmod(1 << digits + 1, n)
+    mantissa = (quotient >> 1) + int(bool(quotient & 1) and (rest > 0 or quotient >> 1 & 1))
+    return Value(min(mantissa, (1 << f.W - 1) - 1), digits)
 
 
 class Ray:

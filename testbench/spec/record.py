@@ -3,12 +3,12 @@
 import json
 from fractions import Fraction
 
-from load_wire import LOAD_TYPES
+from load_wire import LOAD_TYPES, SOURCE_KINDS
 from loading import LoadMessage
 from rays import SIDES, Machine, Material, Source
 from voxels import Span
 from wire import TYPES, Wire
-from words import exact, read_floating
+from words import Format, Value, exact, read_floating
 
 
 class WrongFile(Exception):
@@ -26,6 +26,44 @@ class Event:
 
     def buffer(self):
         return self.what, self.side, self.index
+
+
+def read_source(words, f):
+    """A point is its place and its intensity; another source begins with its kind."""
+    words = list(words)
+    source = Source(words.pop(0) if words[0] in SOURCE_KINDS else "point", None, None)
+
+    def take(form):
+        return [form.word(int(words.pop(0))) for _ in range(3)]
+    if source.is_area():
+        read_extent(source, words, take, Format(1, f.W + 11))
+    elif source.kind != "directional":
+        source.position = [read_floating(words.pop(0), f.W + 12) for _ in range(3)]
+    if source.kind not in ("point", "sphere"):
+        source.axis = take(f.unit)
+    if source.kind == "spot":
+        source.cut_off = f.unit.word(int(words.pop(0)))
+        source.falloff = read_floating(words.pop(0), f.shine_bits - 4)
+    source.intensity = take(f.intensity)
+    return source
+
+
+def read_extent(source, words, take, mantissa):
+    """Mantissas of one exponent, which comes last."""
+    source.position = take(mantissa)
+    if source.kind == "sphere":
+        source.radius = mantissa.word(int(words.pop(0)))
+    else:
+        source.edge_u, source.edge_v = take(mantissa), take(mantissa)
+    e = source.exponent = int(words.pop(0))
+
+    def scaled(m):
+        return Value(m.raw, m.frac - e)
+    source.position = [scaled(m) for m in source.position]
+    if source.kind == "sphere":
+        source.radius = scaled(source.radius)
+    else:
+        source.edge_u, source.edge_v = [scaled(m) for m in source.edge_u], [scaled(m) for m in source.edge_v]
 
 
 class Record:
@@ -90,9 +128,7 @@ class Record:
             kd, ks, t = (f.feature.word(int(c)) for c in (kd, ks, t))
             shine = read_floating(shine, f.shine_bits - 5 + 1)
             S.objects.append(Material(colour, kd, ks, t, shine, f.ior.word(int(ior)), mirror == "1"))
-        for words in self.sources:
-            S.sources.append(Source([read_floating(c, f.W + 12) for c in words[:3]],
-                                    [f.intensity.word(int(c)) for c in words[3:]]))
+        S.set_sources([read_source(words, f) for words in self.sources])
         self.wire = Wire(S)
         self.check_head()
 

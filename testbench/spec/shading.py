@@ -1,9 +1,10 @@
 """The shading unit's arithmetic: set-up of a hit, its children, its intensity, and their cycles."""
 
 from hits import project
+from lights import lit_cycles, set_up_cycles, shift_of, view
 from operators import dot, normalise, square_root
 from rays import KINDS, Ray, point_at
-from words import Value, ZERO, clamp, exact, way_to
+from words import Value, ZERO, clamp, exact
 
 
 class Setup:
@@ -18,15 +19,16 @@ class Setup:
         normal = hit_normal(S, self.local, voxel)
         self.entering = dot(f.accumulator, normal, ray.d) < 0
         self.normal = normal if self.entering else [-c for c in normal]
-        self.views = [view(S, source, self.position, self.normal) for source in S.sources]
-        self.facing = [k for k, (_, _, cosine) in enumerate(self.views) if cosine > 0]
+        shift = shift_of(voxel.polygon, x, y)
+        self.views = [view(S, light, self.position, self.normal, shift) for light in S.lights]
+        self.facing = [k for k, v in enumerate(self.views) if v.cosine > 0 and v.emission > 0]
         shares = [self.material.mirrored, self.material.t]
         self.sends = [worth(S, ray, share) for share in shares]
         self.children = [reflected(S, self) if self.sends[0] else None, refracted(S, self) if self.sends[1] else None]
 
     def cycles(self, S):
         root, start = S.cost("root"), S.cost("ray_start") + 2 * S.cost("reciprocal")
-        cycles = S.cost("shade_setup") + root + len(S.sources) * (S.cost("source_view") + root)
+        cycles = S.cost("shade_setup") + root + set_up_cycles(S)
         if S.option["normals"] == "linear":
             cycles += S.cost("normal_linear")
         if S.option["shadows"] == "per-hit":
@@ -39,12 +41,10 @@ class Setup:
 
     def lit_cycles(self, S, lit, waited):
         """`waited`: the hit was in a slot, which keeps no directions of sources."""
-        lights = sum(k in lit for k in self.facing)
-        cycles = S.cost("local_intensity") + lights * (S.cost("per_lit_source") + S.cost("power"))
-        mirrored = min(lights, 1) if self.material.ks > 0 and not self.sends[0] else 0
-        for name, times in (("mirrored", mirrored), ("light_again", lights if waited else 0)):
-            if S.cost(name) > 0:
-                cycles += times * (S.cost(name) + S.cost("root"))
+        lights = [k for k in self.facing if k in lit]
+        cycles = S.cost("local_intensity") + lit_cycles(S, lights, waited)
+        if lights and self.material.ks > 0 and not self.sends[0] and S.cost("mirrored") > 0:
+            cycles += S.cost("mirrored") + S.cost("root")
         return cycles
 
 
@@ -59,16 +59,6 @@ def hit_normal(S, local, voxel):
 
 def worth(S, ray, share):
     return share > 0 and ray.generation < S.option["max-depth"] and ray.weight * share >= S.min_weight
-
-
-def view(S, source, position, normal):
-    """(direction, distance, cosine) of a source; `normal` None: no cosine."""
-    f = S.formats
-    way = way_to(source.position, position, f)
-    if all(c.raw == 0 for c in way):                # on the surface
-        return [f.nothing, f.nothing, f.one], f.reach.word(0), f.nothing
-    direction, distance = normalise(way, S)
-    return direction, distance, normal and dot(f.unit, normal, direction)
 
 
 def reflected(S, s):
@@ -95,25 +85,37 @@ def refracted(S, s):
     return normalise(way, S)[0]
 
 
+def received(S, s, k, mirrored):
+    """N·L and the highlight of a light, both times what it sends this way."""
+    unit, seen = S.formats.unit, s.views[k]
+    shine, cosine = ZERO, seen.cosine
+    if mirrored:
+        along = dot(unit, mirrored, seen.direction)
+        if along > 0:
+            shine = S.operators.power(along, s.material.shine)
+    if S.lights[k][0].kind == "spot" or S.lights[k][0].is_flat():
+        cosine, shine = unit.hold(cosine * seen.emission), unit.hold(shine * seen.emission)
+    return cosine, shine
+
+
 def intensity_of(S, s, lit, answers):
-    """What a hit sends home. `lit`: sources whose light arrives; `answers`: of the reflected and the refracted ray."""
+    """What a hit sends home. `lit`: lights whose light arrives; `answers`: of the reflected and the refracted ray."""
     f, material = S.formats, s.material
     ambient = f.unit.hold(f.unit.hold(exact(0.1)) * material.kd)
     total = [f.intensity.hold(ambient * c) for c in material.colour]
     mirrored = reflected(S, s) if material.ks > 0 else None
-    for k in s.facing:
-        if k not in lit:
+    for source in S.sources:
+        shares = [received(S, s, k, mirrored) for k in s.facing if k in lit and S.lights[k][0] is source]
+        if not shares:
             continue
-        direction, _, cosine = s.views[k]
-        highlight = ZERO
-        if mirrored:
-            along = dot(f.unit, mirrored, direction)
-            if along > 0:
-                highlight = f.intensity.hold(material.ks * S.operators.power(along, material.shine))
+        cosine, shine = shares[0]
+        if source.is_area():                        # the mean over its samples: the sums are exact
+            cosine, shine = (f.unit.hold(sum(share, ZERO) * S.share) for share in zip(*shares))
+        highlight = f.intensity.hold(material.ks * shine)
         diffuse = f.unit.hold(material.kd * cosine)
         for i in range(3):
             share = f.intensity.hold(highlight + diffuse * material.colour[i])
-            total[i] = f.intensity.hold(total[i] + S.sources[k].intensity[i] * share)
+            total[i] = f.intensity.hold(total[i] + source.intensity[i] * share)
     return [f.intensity.hold(c + material.mirrored * a + material.t * b) for c, a, b in zip(total, *answers)]
 
 
@@ -149,20 +151,22 @@ def secondary_ray(S, parent, s, voxel, child, slot, home):
     return ray
 
 
-def shadow_ray(S, parent, s, voxel, source, slot, home):
-    ray = child_ray(S, "shadow", source, parent.pixel, parent.branch, parent.generation, slot, home)
-    direction, ray.reach, _ = s.views[source]
-    ray.set_direction(direction, S)
+def shadow_ray(S, parent, s, voxel, light, slot, home):
+    ray = child_ray(S, "shadow", light, parent.pixel, parent.branch, parent.generation, slot, home)
+    ray.reach = s.views[light].distance
+    ray.set_direction(s.views[light].direction, S)
     leave_surface(S, ray, s.local, voxel)
     return ray
 
 
-def voxel_shadow_ray(S, voxels, index, source, kind, home):
+def voxel_shadow_ray(S, voxels, index, light, kind, home):
     """memo, precast: from the voxel's own point."""
     voxel, (x, y) = voxels[index], home
-    ray = child_ray(S, kind, source, y * S.width + x, index, 0, index, home)
+    ray = child_ray(S, kind, light, y * S.width + x, index, 0, index, home)
     point = voxel.point
-    direction, ray.reach, _ = view(S, S.sources[source], [point[0] + x, point[1] + y, point[2]], None)
-    ray.set_direction(direction, S)
+    place = [point[0] + x, point[1] + y, point[2]]
+    seen = view(S, S.lights[light], place, None, shift_of(voxel.polygon, x, y))
+    ray.reach = seen.distance
+    ray.set_direction(seen.direction, S)
     leave_surface(S, ray, point, voxel)
     return ray

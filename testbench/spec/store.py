@@ -59,7 +59,7 @@ class Store:
 
     def begin_phase(self, phase, now):
         if self.phase == "load":
-            self.voxel_lit = [set(range(len(self.S.sources))) for _ in self.voxels]
+            self.voxel_lit = [set(range(len(self.S.lights))) for _ in self.voxels]
             self.voxel_known = [set() for _ in self.voxels]
         self.phase = phase
         self.primary_to_send = phase == "trace"
@@ -184,8 +184,8 @@ class Store:
         if self.own:
             return
         if self.phase == "precast":
-            if self.precast_next < len(self.voxels) * len(S.sources):
-                index, source = divmod(self.precast_next, len(S.sources))
+            if self.precast_next < len(self.voxels) * len(S.lights):
+                index, source = divmod(self.precast_next, len(S.lights))
                 self.precast_next += 1
                 self.own = Packet(voxel_shadow_ray(S, self.voxels, index, source, "precast", self.home))
         elif self.primary_to_send and now >= self.own_retry_at:

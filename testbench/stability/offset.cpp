@@ -41,7 +41,7 @@ Verdicts judge(const Loaded& loaded, const TruthRenderer& truth, const Effort& e
         if (!seen || !true_hit || true_hit->polygon != seen->polygon) continue;
         const CellStore& store = loaded.cell(seen->x, seen->y);
         const HitSetup setup = set_up_hit(context, store, seen->ray, seen->hit, seen->x, seen->y);
-        for (std::size_t s = 0; s < context.sources.size(); ++s) {
+        for (std::size_t s = 0; s < context.lights.rays.size(); ++s) {
             if (!(setup.facing >> s & 1)) continue;
             const dvec3 way = loaded.scene.sources[s].position - true_hit->position;
             const double distance = glm::length(way);

@@ -94,7 +94,8 @@ class Reader {
         }
         for (const SweepAxis& axis : design_.axes) {
             const bool preset = axis.option == "preset";
-            if (axis.option != "scene" && axis.option != "view" && axis.option != "frames" && !preset)
+            if (axis.option != "scene" && axis.option != "view" && axis.option != "sources" &&
+                axis.option != "frames" && !preset)
                 continue;
             for (const std::string& name : axis.values)
                 design_.digests[name] = digest_of(preset ? preset_file(name) : name);

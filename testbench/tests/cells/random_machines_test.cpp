@@ -20,7 +20,18 @@ CellScene random_scene(property::Random& random, int width, int height) {
         const double x = random.uniform(-0.2, 1.2), y = random.uniform(-0.2, 1.2), z = random.uniform(0, 1);
         return size * dvec3(x, y, z);
     };
-    for (int i = random.whole(0, 2); i > 0; --i) scene.sources.push_back({anywhere(), dvec3(0.7)});
+    for (int i = random.whole(0, 2); i > 0; --i) {
+        Source source{anywhere(), dvec3(0.7)};
+        source.kind = SourceKind(random.whole(0, source_kinds - 1));
+        source.axis = hand_made::random_direction(random.engine());
+        source.falloff = random.uniform(0, 5);
+        source.edge_u = random.uniform(0.1, 3) * hand_made::random_direction(random.engine());
+        source.edge_v = glm::cross(source.axis, source.edge_u) + 0.3 * source.edge_u;
+        if (is_area(source.kind) && source.kind != SourceKind::sphere)
+            source.axis = -glm::normalize(glm::cross(source.edge_u, source.edge_v));
+        source.radius = random.uniform(0.1, 2);
+        scene.sources.push_back(source);
+    }
     const auto wall = [&](const Material& material, const dvec3& corner, const dvec3& u, const dvec3& v) {
         hand_made::add_rectangle(scene, hand_made::add_object(scene, material), corner, u, v);
     };
@@ -70,6 +81,7 @@ void draw_picture(Drawn& drawn, property::Random& random) {
     s.shadows = Shadows(random.whole(0, 2));
     s.exterior = ExteriorMode(random.whole(0, 1));
     s.max_depth = random.whole(0, 5);
+    s.source_samples = random.chance(0.2) ? random.whole(1, 32) : random.whole(1, 4);
     s.min_weight = random.chance(0.3) ? 1.0 / 256 : 0;
     s.numbers.arithmetic = random.chance(0.5) ? Numbers::exact : Numbers::fixed;
     s.numbers.word_bits = random.whole(12, 24);
@@ -83,8 +95,8 @@ void draw_picture(Drawn& drawn, property::Random& random) {
     drawn.placed = std::make_unique<PlacedScene>();
     drawn.placed->scene = random_scene(random, s.width, s.height);
     drawn.placed->scene.frame.depth_levels = s.depth_levels;
-    drawn.placed->truth =
-        std::make_unique<TruthRenderer>(drawn.placed->scene, TruthSettings{s.max_depth, s.min_weight});
+    drawn.placed->truth = std::make_unique<TruthRenderer>(
+        drawn.placed->scene, TruthSettings{s.max_depth, s.min_weight, false, TruthOf::scene, nullptr, 4});
     drawn.placed->exterior = std::make_unique<ClassicalExterior>(drawn.placed->scene, *drawn.placed->truth);
     drawn.text = "hand-made ";
 }
@@ -128,9 +140,9 @@ Drawn draw(std::uint64_t seed) {
                   std::to_string(m.ray_store) + " (bound " + std::to_string(drawn.least) + "), buffers " +
                   std::to_string(m.buffer_depth) + ", " + networks[int(m.networks)] + ", " +
                   slots[int(m.slots)] + (m.recovery == Recovery::none ? "none" : "postpone") + ", links " +
-                  std::to_string(m.link_bits) + ", shadows " + std::to_string(int(s.shadows)) + ", stall " +
-                  std::to_string(m.stall) + ", exterior " + std::to_string(int(s.exterior)) +
-                  ", generations " + std::to_string(s.max_depth);
+                  std::to_string(m.link_bits) + ", shadows " + std::to_string(int(s.shadows)) + ", samples " +
+                  std::to_string(s.source_samples) + ", stall " + std::to_string(m.stall) + ", exterior " +
+                  std::to_string(int(s.exterior)) + ", generations " + std::to_string(s.max_depth);
     return drawn;
 }
 

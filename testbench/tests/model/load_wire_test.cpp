@@ -23,6 +23,7 @@ struct Loaded {
           settings(shapes::settings_for(scene, HitTest(random.whole(0, 4)), Numbers::fixed)) {
         settings.numbers.word_bits = random.whole(8, 32);
         settings.normals = Normals(random.whole(0, 1));
+        settings.source_samples = random.whole(1, 12);
         settings.display = random.chance(0.3) ? Display::gouraud : Display::phong;
         const double size = std::min({scene.frame.width, scene.frame.height, int(scene.frame.depth)}) - 1.0;
         const auto corner = [&] {
@@ -43,6 +44,17 @@ struct Loaded {
         for (int i = random.whole(0, 5); i > 0; --i)
             scene.sources.push_back(
                 {std::exp(random.uniform(-3, 12)) * normal(), dvec3(random.uniform(0, 3))});
+        if (random.chance(0.5)) {
+            for (Source& source : scene.sources) {
+                source.kind = SourceKind(random.whole(0, source_kinds - 1));
+                source.axis = normal();
+                source.cut_off = random.uniform(0, 1);
+                source.falloff = random.chance(0.2) ? 0 : random.uniform(0.1, 100);
+                source.edge_u = std::exp(random.uniform(-3, 8)) * normal();
+                source.edge_v = std::exp(random.uniform(-3, 8)) * normal();
+                source.radius = std::exp(random.uniform(-3, 8));
+            }
+        }
         scene.frame.depth =
             64 * double(random.whole(1 << 15, (1 << 16) - 1)) * std::ldexp(1.0, random.whole(-22, -15));
     }
@@ -176,11 +188,19 @@ TEST(LoadWire, TheViewerSourcesAndFeaturesUnpackToTheWordsThatCellsLatch) {
         const MessageBits bits =
             message_bits(loaded.settings, MachineSettings(), context.arithmetic.formats());
         const Frame& frame = loaded.scene.frame;
-        const ViewerMessage viewer{context.eye,        random.chance(0.5), {random.chance(0.5), true},
-                                   context.background, frame.depth_levels, frame.level(),
-                                   context.sources};
+        const bool kinds = !SourceCounts(context.lights.sources, 1).points();
+        const ViewerMessage viewer{context.eye,
+                                   random.chance(0.5),
+                                   {random.chance(0.5), true},
+                                   context.background,
+                                   frame.depth_levels,
+                                   frame.level(),
+                                   context.lights.sources,
+                                   kinds,
+                                   context.lights.samples,
+                                   context.lights.share};
         const WireBits packed = wire.pack(viewer);
-        EXPECT_EQ(packed.size(), bits.setup(viewer.sources.size()));
+        EXPECT_EQ(packed.size(), bits.setup(SourceCounts(viewer.sources, 1)));
         const ViewerMessage back = wire.unpack_viewer(packed);
         EXPECT_EQ(back.eye, viewer.eye);
         EXPECT_EQ(back.at_infinity, viewer.at_infinity);
@@ -190,8 +210,30 @@ TEST(LoadWire, TheViewerSourcesAndFeaturesUnpackToTheWordsThatCellsLatch) {
         EXPECT_EQ(back.level, viewer.level);
         ASSERT_EQ(back.sources.size(), viewer.sources.size());
         for (std::size_t i = 0; i < viewer.sources.size(); ++i) {
-            EXPECT_EQ(back.sources[i].position, viewer.sources[i].position);
-            EXPECT_EQ(back.sources[i].intensity, viewer.sources[i].intensity);
+            const Source& found = back.sources[i];
+            const Source& wanted = viewer.sources[i];
+            EXPECT_EQ(found.kind, wanted.kind);
+            EXPECT_EQ(found.intensity, wanted.intensity);
+            if (wanted.kind != SourceKind::directional) {
+                EXPECT_EQ(found.position, wanted.position);
+            }
+            if (wanted.kind != SourceKind::point && wanted.kind != SourceKind::sphere) {
+                EXPECT_EQ(found.axis, wanted.axis);
+            }
+            if (wanted.kind == SourceKind::spot) {
+                EXPECT_EQ(found.cut_off, wanted.cut_off);
+                EXPECT_EQ(found.falloff, wanted.falloff);
+            }
+            if (!is_area(wanted.kind)) continue;
+            EXPECT_EQ(found.exponent, wanted.exponent);
+            EXPECT_EQ(back.samples, viewer.samples);
+            EXPECT_EQ(back.share, viewer.share);
+            if (wanted.kind == SourceKind::sphere) {
+                EXPECT_EQ(found.radius, wanted.radius);
+            } else {
+                EXPECT_EQ(found.edge_u, wanted.edge_u);
+                EXPECT_EQ(found.edge_v, wanted.edge_v);
+            }
         }
         const Material& material = context.objects[0];
         const WireBits features = wire.pack(material);
@@ -233,15 +275,21 @@ TEST(LoadWire, TheDocumentsLayoutsAreThese) {
         const char* heading;
         LoadType type;
         const PictureSettings& settings;
+        SourceKind kind = SourceKind::point;
     };
+    const LoadType kinds = LoadType::viewer_of_kinds;
     for (const Table& table :
          {Table{"## Viewer and sources", LoadType::viewer, picture},
+          Table{"## Viewer and a directional source", kinds, picture, SourceKind::directional},
+          Table{"## Viewer and a spot", kinds, picture, SourceKind::spot},
+          Table{"## Viewer and a rectangle", kinds, picture, SourceKind::rectangle},
+          Table{"## Viewer and a sphere", kinds, picture, SourceKind::sphere},
           Table{"## Features", LoadType::features, picture}, Table{"## Polygon", LoadType::polygon, picture},
           Table{"## Surface", LoadType::surface, picture}, Table{"## Trapeze", LoadType::trapeze, picture},
           Table{"## Span", LoadType::span, picture},
           Table{"## Span at rung depth with one normal a voxel", LoadType::span, papers}}) {
         std::vector<std::pair<std::string, int>> fields;
-        for (const WireField& field : LoadWire(table.settings, formats).layout(table.type))
+        for (const WireField& field : LoadWire(table.settings, formats).layout(table.type, table.kind))
             fields.emplace_back(field.name, field.bits);
         EXPECT_EQ(layout_table(table.heading), fields) << table.heading;
     }

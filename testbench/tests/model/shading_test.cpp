@@ -110,6 +110,40 @@ TEST(Shading, AddsAmbientDiffuseAndHighlightOfEveryLitSource) {
     }
 }
 
+TEST(Shading, ADirectionalSourceShinesEverywhereTheSameWay) {
+    Source sun;
+    sun.kind = SourceKind::directional;
+    sun.axis = glm::normalize(dvec3(1, 2, -3));
+    for (const dvec3 place : {dvec3(0), dvec3(100, -5, 7)}) {
+        const ShadePoint point = shade_point(place, {0, 0, 1}, {0, 0, -1}, {0, 0, -1});
+        const SourceView view = view_source(point, sun);
+        EXPECT_EQ(view.direction, sun.axis);
+        EXPECT_EQ(view.distance, std::numeric_limits<double>::infinity());
+        EXPECT_DOUBLE_EQ(view.cosine, 3 / std::sqrt(14.0));
+        EXPECT_TRUE(view.faces());
+    }
+}
+
+TEST(Shading, ASpotFallsOffWithAPowerOfTheCosineAndEndsAtItsConesEdge) {
+    Material m = shiny();
+    const ShadePoint point = shade_point(dvec3(0), {0, 0, 1}, {0, 0, -1}, {0, 0, -1});
+    for (double degrees = 0; degrees < 90; degrees += 5) {
+        const double radians = degrees * 3.14159265358979 / 180;
+        Source spot{{0, 0, -5}, dvec3(1)};
+        const dvec3 as_point = local_intensity(point, m, &spot, 1, 1) - 0.1 * m.diffuse * m.colour;
+        spot.kind = SourceKind::spot;
+        spot.axis = {std::sin(radians), 0, -std::cos(radians)};
+        spot.cut_off = std::cos(32 * 3.14159265358979 / 180);
+        spot.falloff = 3;
+        const SourceView view = view_source(point, spot);
+        EXPECT_EQ(view.faces(), degrees < 32) << degrees;
+        const double share = degrees < 32 ? std::pow(std::cos(radians), 3) : 0;
+        EXPECT_NEAR(view.emission, share, 1e-12);
+        const dvec3 got = local_intensity(point, m, &spot, 1, 1) - 0.1 * m.diffuse * m.colour;
+        EXPECT_LT(glm::length(got - share * as_point), 1e-12) << degrees;
+    }
+}
+
 TEST(Shading, BothSidesOfASurfaceLookTheSame) {
     const Material m = shiny();
     const Source source{{0, 0, -5}, dvec3(1)};
@@ -151,7 +185,8 @@ TEST(Shading, ARayThatIsJustBentAlongTheSurfaceIsNotReflectedTotally) {
     EXPECT_EQ(transmit_direction(point, 1), dvec3(1, 0, 0));
 }
 
-/// Straight through a thin medium, in the shortest words: 64 saturates, and what is left of the bent way is 0.
+/// Straight through a thin medium, in the shortest words: 64 saturates, and what is left of the bent way is
+/// 0.
 TEST(Shading, ARayOfWhichShortWordsLeaveNothingIsReflected) {
     NumberSettings numbers;
     numbers.word_bits = 8;

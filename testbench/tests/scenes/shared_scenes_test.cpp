@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(SharedScenes, FoundObjFilesSayWhatTheyLeaveOutAndAreDrawn) {
     SKIP_WITHOUT_SHARED_SCENES();
     const std::pair<const char*, std::vector<const char*>> cases[] = {
-        {"ke_lamp", {"'Ke' (emission) is ignored"}},
+        {"ke_lamp", {"lit by"}},
         {"mtl_silent",
          {"'bump'", "'norm'", "'disp'", "'decal'", "'refl'", "'Pm'", "unknown word 'nonsense'"}},
         {"dissolve_no_illum", {"no illum is given"}},

@@ -42,6 +42,13 @@ RUNS = {
                  "span precast blocked"),
     "gouraud": ("cornell.nff", "6..11,6..11", "--display gouraud --hit mask --word-bits 16 --reciprocal table --depth 64",
                 "span reflected shadow lit"),
+    "sources": ("cornell.nff", "0..5,0..5", "--sources {scenes}/sources.toml --word-bits 18", "span reflected shadow lit blocked"),
+    "memo_sources": ("cornell.nff", "3..8,3..8", "--sources {scenes}/sources.toml --shadows memo --power schlick",
+                     "span reflected memo lit blocked"),
+    "areas": ("cornell.nff", "4..9,0..5", "--sources {scenes}/lamp.toml --source-samples 5 --rounding truncate",
+              "span reflected shadow lit blocked"),
+    "precast_areas": ("cornell.nff", "4..9,2..7", "--sources {scenes}/lamp.toml --source-samples 8 --shadows precast --word-bits 28",
+                      "span reflected precast blocked"),
 }
 CELLS = "12x12"
 
@@ -55,7 +62,7 @@ class Test:
 
     def record(self):
         result = subprocess.run([self.program, "render", self.scenes / self.scene, "--cells", CELLS, "-o", self.folder / "run",
-                                 "--golden", self.cells, *self.options.split()],
+                                 "--golden", self.cells, *self.options.format(scenes=self.scenes).split()],
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         print(result.stdout)
         expect(result.returncode == 0, f"a run that completes, not exit code {result.returncode}")

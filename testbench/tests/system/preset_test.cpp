@@ -33,11 +33,11 @@ std::map<std::string, std::string> entries_of(const std::string& toml) {
 
 /// Options of a run, not of a machine or its picture: no preset has them.
 const std::set<std::string> of_a_run = {
-    "scene",       "view",       "frames",     "frame",       "output",      "quiet",
-    "stage",       "engine",     "detail",     "granularity", "wire-check",  "truth",
-    "clip-truth",  "watch-ray",  "film",       "rays",        "watch-pixel", "vcd-on-deadlock",
-    "probe",       "window",     "vcd-last",   "vcd-mark",    "vcd-limit",   "golden",
-    "golden-part", "save-array", "load-array", "cost"};  // the datapath's
+    "scene",         "view",      "frames",   "frame",     "output",      "quiet",           "sources",
+    "truth-samples", "stage",     "engine",   "detail",    "granularity", "wire-check",      "truth",
+    "clip-truth",    "watch-ray", "film",     "rays",      "watch-pixel", "vcd-on-deadlock", "probe",
+    "window",        "vcd-last",  "vcd-mark", "vcd-limit", "golden",      "golden-part",     "save-array",
+    "load-array",    "cost"};  // the datapath's
 
 TEST(Preset, DefaultIsTheDefaultOfEveryOptionOfAMachine) {
     const Workshop workshop;

@@ -61,6 +61,13 @@ TEST(Reproduction, ATracedRunFromItsConfigurationIsTheSameRun) {
                                         "b 0.1 0.2 0.3\nv\nfrom 1 3.5 9\nat 0 0.8 0\nup 0.1 1 0\nangle 33\n"
                                         "hither 0.1\nresolution 64 64\nl -5 8 6\nl 4 4 4 0.5 0.4 0.3\n")
                                  .string();
+    const std::string sources =
+        workshop
+            .write(
+                "lamp.toml",
+                "add = true\n[[source]]\nkind = 'sphere'\ncentre = [3, 5, 2]\nradius = 0.7\n"
+                "[[source]]\nkind = 'directional'\ndirection = [0.3, -1, -0.4]\ncolour = [0.1, 0.2, 0.3]\n")
+            .string();
     const std::vector<Words> runs = {
         {},
         {"--hit", "mask", "--shadows", "memo", "--exterior", "none", "--ray-store", "5", "--buffer", "3"},
@@ -69,6 +76,10 @@ TEST(Reproduction, ATracedRunFromItsConfigurationIsTheSameRun) {
         // No option at its default, and numbers that need all their digits.
         {"--view",
          view,
+         "--sources",
+         sources,
+         "--source-samples",
+         "3",
          "--viewer",
          "infinity",
          "--chord-error",

@@ -76,6 +76,8 @@ TEST(Usage, WholeNumbersOutOfRangeAreRefused) {
         {"depth", {"0", "-1", "65537"}},
         {"max-depth", {"-1", "63"}},
         {"word-bits", {"7", "33", "-20"}},
+        {"source-samples", {"0", "-1", "65"}},
+        {"truth-samples", {"0", "-1", "65537"}},
         {"ray-store", {"0", "-1", "1025"}},
         {"buffer", {"0", "-1", "1025"}},
         {"link-bits", {"0", "-1", "4097"}},
