@@ -51,27 +51,32 @@ void OptionTable::flag(const std::string& name, bool& target, const std::string&
     entries_.push_back({name, [&target] { return nlohmann::ordered_json(target); }});
 }
 
-void OptionTable::size(const std::string& name, int& width, int& height, const std::string& help) {
+void OptionTable::size(const std::string& name, int& width, int& height, const std::string& help,
+                       const std::string& none) {
     const auto parse = [](const std::string& word, int& w, int& h) {
         const auto x = word.find('x');
         return x != std::string::npos && parse_number(word.substr(0, x), w) &&
                parse_number(word.substr(x + 1), h) && w >= 1 && h >= 1 && w <= 4096 && h <= 4096;
     };
-    const auto check = [parse](const std::string& word) -> std::string {
+    const auto check = [parse, none](const std::string& word) -> std::string {
         int w = 0;
         int h = 0;
-        return parse(word, w, h) ? "" : "expected WxH from 1x1 to 4096x4096, not '" + printable(word) + "'";
+        if (parse(word, w, h) || (!none.empty() && word == none)) return "";
+        return "expected " + (none.empty() ? "" : none + " or ") + "WxH from 1x1 to 4096x4096, not '" +
+               printable(word) + "'";
     };
-    const auto set = [parse, &width, &height](const std::string& word) { parse(word, width, height); };
+    const auto set = [parse, &width, &height](const std::string& word) {
+        if (!parse(word, width, height)) width = height = 0;
+    };
+    const auto text = [&width, &height, none] {
+        return width == 0 ? none : std::to_string(width) + "x" + std::to_string(height);
+    };
     app_.add_option_function<std::string>("--" + name, set, help)
         ->group(group_)
         ->check(CLI::Validator(check, "WxH"))
-        ->default_str(std::to_string(width) + "x" + std::to_string(height))
+        ->default_str(text())
         ->take_last();
-    entries_.push_back({name, [&width, &height] {
-                            return nlohmann::ordered_json(std::to_string(width) + "x" +
-                                                          std::to_string(height));
-                        }});
+    entries_.push_back({name, [text] { return nlohmann::ordered_json(text()); }});
 }
 
 namespace {

@@ -16,9 +16,14 @@ void add_placement_options(OptionTable& table, RenderOptions& options) {
                  "this one of --frames alone, from 1; 0: all, which only render can");
     table.choice("viewer", p.viewer, {{"scene", ViewerMode::scene}, {"infinity", ViewerMode::infinity}},
                  "viewer at the scene's distance, or at infinity (axial primary rays)");
-    table.size("cells", p.width, p.height, "size of the array, one cell per pixel");
+    table.size("cells", p.width, p.height, "size of the array");
+    table.size(
+        "pixels", p.pixels_wide, p.pixels_high,
+        "size of the picture, a whole multiple of the cells each way: a cell sends the primary rays of "
+        "a block of pixels; cells: one each",
+        "cells");
     table.number("chord-error", p.chord_error, 1e-3, 1e3,
-                 "depth of a curved object's facets below their corners, cells; half of it lies outside");
+                 "depth of a curved object's facets below their corners, pixels; half of it lies outside");
     table.number(
         "tessellate-for", p.tessellate_for, 0.0, 100.0,
         "PSNR of the polygons against the scene, dB, that chooses a chord error for each curved object; "
@@ -71,6 +76,8 @@ void add_communication_options(OptionTable& table, MachineSettings& m) {
                  "which messages share a buffer");
     table.choice("recovery", m.recovery, {{"postpone", Recovery::postpone}, {"none", Recovery::none}},
                  "a ray that finds no slot: destroyed and sent again, or left waiting");
+    table.number("own-rays", m.own_rays, 1, most_own_rays,
+                 "primary rays of a cell that may be under way at once; no more than it has pixels are");
     table.choice("slots", m.slots,
                  {{"reserved", Slots::reserved}, {"free", Slots::free}, {"nested", Slots::nested}},
                  "slots kept by generation, free for all, or kept for deeper generations alone");
