@@ -16,6 +16,7 @@ Cell::Cell(Environment& environment, int x, int y)
       answer_moved_(false),
       moved_(false),
       blocked_(false),
+      injector_(environment.own_rays),
       ray_store_(environment.machine.ray_store, waiting_generations(environment.context),
                  environment.machine.slots),
       loading_(environment.machine.loading_units) {}
@@ -30,7 +31,8 @@ void Cell::begin_phase() {
     if (env_.context.settings.shadows == Shadows::memo && env_.phase == Phase::trace) {
         asked_.assign(store_.voxels.size(), 0);
     }
-    injector_.begin_phase(env_.phase == Phase::trace, start_of_primary(env_, x_, y_));
+    injector_.begin_phase(0, env_.phase == Phase::trace ? env_.context.scene.frame.block() : 0,
+                          start_of_primaries(env_, x_, y_));
 }
 
 Cycle Cell::step(Cycle now) {

@@ -46,8 +46,8 @@ class alignas(64) Cell final : public Client {
     /// Begins the environment's phase in the next cycle.
     void begin_phase();
 
-    /// Begins with the cell's own tree once more, in a phase trace that is over.
-    void begin_tree() { injector_.begin_phase(true); }
+    /// Begins with the tree of a pixel of its block once more, in a phase trace that is over.
+    void begin_tree(int pixel) { injector_.begin_phase(pixel, pixel + 1); }
 
     /// Runs one cycle. Returns the next cycle in which the cell must run without being woken; `never` if
     /// there is none.

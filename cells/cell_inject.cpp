@@ -23,8 +23,8 @@ void Cell::feed_own(Cycle now) {
         ++env_.meters.counters.rays.precast;
         return;
     }
-    if (!injector_.primary_due(now, wakeup_)) return;
-    injector_.load(*launch(begin_primary(injector_, env_, x_, y_), nullptr));
+    const auto number = injector_.primary_due(now, wakeup_);
+    if (number) injector_.load(*launch(begin_primary(*number, injector_, env_, x_, y_), nullptr));
 }
 
 void Cell::feed_children(Cycle now) {

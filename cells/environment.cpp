@@ -20,6 +20,8 @@ CellConfig::CellConfig(const CellScene& scene, const PictureSettings& picture_se
       classes(buffer_classes(machine.networks)),
       voxel_bits(raycell::voxel_bits(settings, context.arithmetic.formats(), context.lights.rays.size())),
       kept_span_bits(raycell::kept_span_bits(bits)),
+      own_rays(own_rays_of(settings, machine)),
+      primary_cycles(raycell::primary_cycles(context, machine.costs)),
       answer_routing(classes.count > 1 ? int(machine.costs.route_return) : 0) {
     if (!machine.wire_check) return;
     wire.emplace(settings, machine, context.arithmetic.formats());

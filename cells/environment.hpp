@@ -44,6 +44,9 @@ struct CellConfig {
     BufferClasses classes;
     VoxelBits voxel_bits;
     int kept_span_bits;  ///< of a span that waits for its voxel
+    int own_rays;        ///< primary rays of a cell that may be under way at once
+    /// Cycles from a primary ray of a cell to the next of its pixels, which is made meanwhile.
+    std::uint32_t primary_cycles;
     /// Cycles from an answer's arrival until its cell must look at it; 0 where rays and answers share a
     /// buffer.
     int answer_routing;

@@ -31,29 +31,34 @@ void end_ray(RayPacket& packet, Environment& environment, CellMeter& meter) {
     environment.pools.rays.give_back(&packet);
 }
 
-Cycle start_of_primary(const Environment& environment, int x, int y) {
-    const auto pixel = std::uint64_t(y) * std::uint64_t(environment.width()) + std::uint64_t(x);
-    return environment.phase_start + 1 + Retry::first_start(environment.machine, ray_id(pixel, 0));
+Cycle start_of_primaries(const Environment& environment, int x, int y) {
+    const std::uint64_t first = environment.context.scene.frame.pixel_index(x, y, 0);
+    return environment.phase_start + 1 + Retry::first_start(environment.machine, ray_id(first, 0));
 }
 
-Ray begin_primary(Injector& injector, Environment& environment, int x, int y) {
-    if (injector.primary_sent()) {
+Ray begin_primary(unsigned number, Injector& injector, Environment& environment, int x, int y) {
+    const Cycle made = environment.scheduler.now() + Cycle(environment.primary_cycles);
+    const bool first = injector.primary_sent(number, made);
+    Ray ray = primary_ray(environment.context, x, y, injector.pixel(number));
+    ray.slot = number;
+    if (first) {
         ++environment.meters.counters.rays.primary;
-        record_background(environment.picture.at(x, y));
+        record_background(environment.picture.pixels[pixel_of(ray.id)]);
     }
-    return primary_ray(environment.context, x, y);
+    return ray;
 }
 
 void end_primary(const Answer& answer, Injector& injector, Environment& environment, int x, int y) {
     const Cycle now = environment.scheduler.now();
     if (answer.kind == Answer::Kind::postponed) {
-        injector.primary_postponed(environment.machine, answer.id, now);
+        injector.primary_postponed(answer.slot, environment.machine, answer.id, now);
         return;
     }
-    Pixel& pixel = environment.picture.at(x, y);
+    const Frame& frame = environment.context.scene.frame;
+    Pixel& pixel = environment.picture.pixels[frame.pixel_index(x, y, injector.pixel(answer.slot))];
     pixel.colour = answer.colour;
     pixel.cycle = std::uint32_t(now - environment.phase_start);
-    injector.primary_answered();
+    injector.primary_answered(answer.slot);
     ++environment.meters.counters.pixels_done;
 }
 

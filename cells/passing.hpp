@@ -50,11 +50,11 @@ Answer response_of(const RayPacket& packet, const Context& context);
 void end_ray(RayPacket& packet, Environment& environment, CellMeter& meter);
 /// Makes and counts the packet of a ray that starts now: a child, a primary or a precast ray.
 RayPacket* launch(const Ray& ray, Environment& environment);
-/// First cycle in which the primary ray of pixel (x, y) may be sent in the phase that begins now.
-Cycle start_of_primary(const Environment& environment, int x, int y);
-/// Returns the primary ray of pixel (x, y), which must be due, and notes it as sent.
-Ray begin_primary(Injector& injector, Environment& environment, int x, int y);
-/// Handles the answer to the primary ray of pixel (x, y), which may be a postponed notice.
+/// First cycle in which cell (x, y) may send a primary ray in the phase that begins now.
+Cycle start_of_primaries(const Environment& environment, int x, int y);
+/// Returns the primary ray of cell (x, y) that is due, and notes it as sent.
+Ray begin_primary(unsigned number, Injector& injector, Environment& environment, int x, int y);
+/// Handles the answer to a primary ray of cell (x, y), which may be a postponed notice.
 void end_primary(const Answer& answer, Injector& injector, Environment& environment, int x, int y);
 
 /// One cycle of loading in column x: works on the oldest message of `from`, stores its voxel in `store` if it

@@ -84,13 +84,14 @@ Picture Joined::picture() const {
         std::uint32_t postponed;
         std::uint32_t hops;
     };
-    const auto width = std::size_t(parts_.environment.width());
+    const auto width = std::size_t(parts_.picture.width);
+    const int block_height = parts_.environment.context.scene.frame.block_height;
     const std::vector<Pixel>& mine = parts_.picture.pixels;
     std::vector<Abroad> abroad;
     ByteWriter bytes;
-    for (int y = 0; y < parts_.environment.height(); ++y) {
+    for (int y = 0; y < parts_.picture.height; ++y) {
         const std::size_t first = std::size_t(y) * width;
-        if (parts_.environment.share.contains(y)) {
+        if (parts_.environment.share.contains(y / block_height)) {
             std::vector<Pixel> row(&mine[first], &mine[first] + width);
             for (std::size_t x = 0; x < width; ++x) row[x].hops = hops[first + x];
             bytes.put_all(row);
@@ -106,8 +107,8 @@ Picture Joined::picture() const {
     RankReaders readers(*ranks_, ranks_->gather(bytes.take()));
     if (readers.empty()) return {};
     Picture picture(parts_.picture.width, parts_.picture.height);
-    for (int y = 0; y < parts_.environment.height(); ++y) {
-        const auto row = readers.of_row(y).get_all<Pixel>();
+    for (int y = 0; y < parts_.picture.height; ++y) {
+        const auto row = readers.of_row(y / block_height).get_all<Pixel>();
         std::copy(row.begin(), row.end(), picture.pixels.begin() + std::ptrdiff_t(y) * parts_.picture.width);
     }
     for (ByteReader& reader : readers) {

@@ -30,11 +30,15 @@ Binding Machine::longest_tree() {
     before_cycle_ = {};
     progress_ = {};
     for (const std::size_t pixel : pixels_with_most_hops(env.meters.pixel_hops)) {
-        const int x = int(pixel % std::size_t(env.width()));
-        const int y = int(pixel / std::size_t(env.width()));
+        const Frame& frame = env.context.scene.frame;
+        const int column = int(pixel % std::size_t(frame.picture_width()));
+        const int row = int(pixel / std::size_t(frame.picture_width()));
+        const int x = column / frame.block_width;
+        const int y = row / frame.block_height;
         const std::uint64_t destroyed = env.meters.counters.rays_destroyed;
         env.phase_start = parts_.scheduler.now();
-        parts_.array.begin_tree(x, y);
+        parts_.array.begin_tree(x, y,
+                                row % frame.block_height * frame.block_width + column % frame.block_width);
         parts_.scheduler.begin();
         sc_core::sc_start();
         if (env.pools.rays.in_use() + env.pools.answers.in_use() > 0) return {};  // interrupted

@@ -41,10 +41,7 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     furnish();
     if (settings.stage == RunStage::load) {
         if (going()) {
-            for (const Cell& cell : parts_.array.cells()) {
-                parts_.picture.at(cell.x(), cell.y()) =
-                    display_cell(parts_.environment.context, cell.store(), cell.x(), cell.y());
-            }
+            for (const Cell& cell : parts_.array.cells()) display(cell);
         }
     } else {
         if (going() && settings.shadows == Shadows::precast) run_phase(Phase::precast, result);
@@ -66,6 +63,16 @@ RunResult Machine::run(std::function<void(const RunProgress&)> progress) {
     result.picture = joined_.picture();
     result.ended = parts_.scheduler.now();
     return result;
+}
+
+/// Shows the nearest voxels of a cell in its block of pixels.
+void Machine::display(const Cell& cell) {
+    const Context& context = parts_.environment.context;
+    const Frame& frame = context.scene.frame;
+    for (int pixel = 0; pixel < frame.block(); ++pixel) {
+        parts_.picture.pixels[frame.pixel_index(cell.x(), cell.y(), pixel)] =
+            display_cell(context, cell.store(), cell.x(), cell.y(), pixel);
+    }
 }
 
 void Machine::load(RunResult& result) {
@@ -245,7 +252,8 @@ double Machine::phase_share() const {
         case Phase::precast:
             return share(c.rays_answered + c.rays_silent, precast_rays_);
         case Phase::trace:
-            return share(c.pixels_done, parts_.array.cells().size());  // of this rank
+            return share(c.pixels_done, parts_.array.cells().size() *
+                                            std::size_t(parts_.environment.context.scene.frame.block()));
     }
     return 0;
 }
@@ -253,8 +261,10 @@ double Machine::phase_share() const {
 void Machine::tell_progress(Cycle now) const {
     constexpr const char* names[] = {"load", "precast", "trace"};
     const RankProgress so_far = parts_.ranks ? parts_.ranks->agreed() : progress();
-    progress_({names[int(parts_.environment.phase)], now, so_far.done, parts_.cell_count(), so_far.hops,
-               phase_share(), seconds_since(phase_began_)});
+    const bool traces = parts_.environment.phase == Phase::trace;
+    progress_({names[int(parts_.environment.phase)], now, so_far.done,
+               traces ? parts_.picture.pixels.size() : parts_.cell_count(), so_far.hops, phase_share(),
+               seconds_since(phase_began_)});
 }
 
 }  // namespace raycell

@@ -91,6 +91,7 @@ class Machine : public sc_core::sc_module {
   private:
     void load(RunResult& result);
     void furnish();
+    void display(const Cell& cell);
     void run_phase(Phase phase, RunResult& result);
     void count_precast_rays();
     static bool watch(void* self, Cycle now);

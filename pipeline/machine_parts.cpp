@@ -11,7 +11,7 @@ MachineParts::MachineParts(const CellScene& scene, const PictureSettings& settin
                            RankExchange* other_ranks)
     : ranks(other_ranks),
       scheduler("scheduler", sc_core::sc_time(1e3 / machine.clock_mhz, sc_core::SC_NS)),
-      picture(scene.frame.width, scene.frame.height),
+      picture(scene.frame.picture_width(), scene.frame.picture_height()),
       environment(scene, settings, machine, scheduler, picture, traffic, ranks ? &ranks->share() : nullptr),
       distribution("distribution", environment),
       array("array", environment, granularity) {

@@ -41,7 +41,7 @@ bool Judge::phase_complete() const {
                    joined_.sum(std::any_of(parts_.array.cells().begin(), parts_.array.cells().end(),
                                            [](const Cell& cell) { return cell.busy(); })) == 0;
         case Phase::trace:
-            return c.pixels_done == cells;
+            return c.pixels_done == cells * std::uint64_t(parts_.environment.context.scene.frame.block());
     }
     return false;
 }

@@ -227,11 +227,11 @@ void Array::begin_phase() {
     wake_all(environment_.scheduler.now() + 1);
 }
 
-void Array::begin_tree(int x, int y) {
+void Array::begin_tree(int x, int y, int pixel) {
     if (CellSocket* own = socket(x, y)) {
-        own->begin_phase();
+        own->begin_tree(pixel);
     } else {
-        cell(x, y).begin_tree();
+        cell(x, y).begin_tree(pixel);
     }
     environment_.scheduler.wake(client(x, y), environment_.scheduler.now() + 1);
 }

@@ -63,8 +63,9 @@ class Array : public sc_core::sc_module {
 
     /// Begins the environment's phase: wakes every cell in the next cycle.
     void begin_phase();
-    /// Has one cell send its primary ray once more, in the next cycle; phase trace must be over.
-    void begin_tree(int x, int y);
+    /// Has a cell send the primary ray of a pixel of its block once more, in the next cycle; phase trace must
+    /// be over.
+    void begin_tree(int x, int y, int pixel);
     /// Wakes every cell in this cycle.
     void wake_all(Cycle cycle);
 

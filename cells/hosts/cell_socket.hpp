@@ -20,6 +20,8 @@ class CellSocket : public CellPorts, public Client {
 
     /// The environment's phase begins in the next cycle; the module is woken in it.
     virtual void begin_phase() {}
+    /// The primary ray of a pixel of its block is to be sent once more; phase trace is over.
+    virtual void begin_tree(int /*pixel*/) {}
     /// Notified in every cycle in which a message arrives, and in the cycle after room was made behind an
     /// output that had refused a message.
     const sc_core::sc_event& woken() const { return woken_; }

@@ -279,7 +279,7 @@ double Probe::expected_bytes(Cycle now) const {
         const double share = double(now - settings_.from + 1) / double(settings_.to - settings_.from + 1);
         if (share > least_share) expected = bytes / share;
     }
-    const double pixels = double(env_.width()) * double(env_.height());
+    const auto pixels = double(env_.picture.pixels.size());
     const double share = env_.phase == Phase::trace ? double(env_.meters.counters.pixels_done) / pixels : 0;
     if (share > least_share) {
         const double before = double(phase_bytes_);

@@ -1,8 +1,9 @@
 // The injector: the register from which the cell's own rays are sent, one at a time (design, section 6). In
-// phase trace this is the primary ray of its pixel, sent again if it was postponed; in phase precast, the
-// precast rays of its voxels.
+// phase trace these are the primary rays of its block of pixels, each sent again if it was postponed; in
+// phase precast, the precast rays of its voxels.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "cells/channels/message.hpp"
@@ -13,11 +14,17 @@ namespace raycell {
 
 class Injector {
   public:
-    /// Begins a phase; `traces`: the pixel's primary ray must be sent in it, from cycle `start` on.
-    void begin_phase(bool traces, Cycle start = 0) {
-        primary_to_send_ = traces;
-        retry_.wait_until(start);
-        precast_next_ = 0;
+    /// So many primary rays may be under way at once, 1..most_own_rays. An answer names the one that it is
+    /// for by its number, from 0.
+    explicit Injector(int own_rays)
+        : own_(new OwnRay[std::size_t(own_rays)]), count_(std::uint8_t(own_rays)) {}
+
+    /// Begins a phase; the primary rays of the pixels first to last - 1 of the block must be sent in it, from
+    /// cycle `start` on.
+    void begin_phase(int first, int last, Cycle start = 0) {
+        next_ = std::uint32_t(first);
+        pixels_ = std::uint32_t(last);
+        made_ = start;
     }
 
     /// The own ray that waits to leave; null if the register is free.
@@ -25,16 +32,21 @@ class Injector {
     void load(RayPacket& packet) { ray_ = &packet; }
     void left() { ray_ = nullptr; }
 
-    /// Whether the primary ray must still be sent, for the first time or again, now or later.
-    bool primary_to_send() const { return primary_to_send_; }
-    /// Whether the primary ray may be sent now. If only later, asks for a step in that cycle.
-    bool primary_due(Cycle now, Wakeup& wakeup) const;
-    /// Notes that the primary ray was sent; true the first time.
-    bool primary_sent();
-    void primary_postponed(const MachineSettings& machine, std::uint64_t ray, Cycle now);
-    void primary_answered() { primary_awaited_ = false; }
-    /// Whether the pixel's intensity is still missing or an own ray stands in the register.
-    bool unfinished() const { return primary_to_send_ || primary_awaited_ || ray_; }
+    /// Whether a primary ray must be sent, for the first time or again, now or later, and may be under way
+    /// beside the others.
+    bool primary_to_send() const { return to_send_ || begins_another(); }
+    /// The number of the primary ray that may be sent now: of those that were postponed the next in turn, or
+    /// that of the next pixel. If only later, asks for a step in that cycle.
+    std::optional<unsigned> primary_due(Cycle now, Wakeup& wakeup) const;
+    /// Notes that a primary ray was sent; true the first time. Then the next pixel's ray is made, and can be
+    /// sent from cycle `made` on.
+    bool primary_sent(unsigned number, Cycle made);
+    /// The pixel of the block that a primary ray under way is for.
+    int pixel(unsigned number) const { return own_[number].pixel; }
+    void primary_postponed(unsigned number, const MachineSettings& machine, std::uint64_t ray, Cycle now);
+    void primary_answered(unsigned number) { awaited_ &= std::uint16_t(~(1U << number)); }
+    /// Whether a pixel's intensity is still missing or an own ray stands in the register.
+    bool unfinished() const { return awaited_ || next_ < pixels_ || ray_; }
 
     /// The voxel and the source of the next precast ray; each pair comes once in a phase.
     struct Precast {
@@ -44,11 +56,25 @@ class Injector {
     std::optional<Precast> next_precast(std::size_t voxels, std::size_t sources);
 
   private:
+    /// A primary ray under way or postponed.
+    struct OwnRay {
+        Retry retry;
+        int pixel = 0;
+    };
+    std::uint32_t all() const { return (1U << count_) - 1; }
+    /// Not while one is postponed: more rays would only be refused too, and each costs its tests again.
+    bool begins_another() const { return next_ < pixels_ && awaited_ != all() && !to_send_; }
+
     RayPacket* ray_ = nullptr;
-    Retry retry_;
-    std::uint64_t precast_next_ = 0;  ///< voxel · sources + source
-    bool primary_to_send_ = false;
-    bool primary_awaited_ = false;
+    std::unique_ptr<OwnRay[]> own_;
+    Cycle made_ = 0;             ///< first cycle in which the next pixel's ray can be sent
+    std::uint32_t next_ = 0;     ///< pixel to begin with next; precast: voxel · sources + source
+    std::uint32_t pixels_ = 0;   ///< of the block, to be sent in this phase
+    std::uint16_t to_send_ = 0;  ///< bits of own rays that were postponed
+    std::uint16_t awaited_ = 0;  ///< bits of own rays that are not answered
+    std::uint8_t turn_ = 0;      ///< of those postponed, the first to be looked at
+    std::uint8_t count_;
+    static_assert(most_own_rays <= 16);  // bits of a word
 };
 
 }  // namespace raycell

@@ -26,8 +26,14 @@ namespace {
 
 /// Margin between the visible scene and the cube's front and back, in cells. A surface that faces the viewer
 /// must not lie on a face of the cube, where words can't tell inside from outside. The margin also covers the
-/// distance by which facets lie inside or outside of a curved surface.
-double margin_of(const PictureSettings& settings) { return std::max(0.5, 2 * settings.chord_error); }
+/// distance by which facets lie inside or outside of a curved surface. It is measured in pixels, so that the
+/// cube does not depend on how many of them a cell has, but is never less than some last bits of a position.
+double margin_of(const PictureSettings& settings, const Frame& frame) {
+    const double margin = std::max(0.5, 2 * settings.chord_error) / frame.pixels_per_cell();
+    const NumberSettings& numbers = settings.numbers;
+    return numbers.arithmetic == Numbers::exact ? margin
+                                                : std::max(margin, scale_by(1, 4 - numbers.word_bits));
+}
 
 /// The array's field of view, in the viewer's coordinates. `tan_x` and `tan_y` are half of its sides at
 /// distance 1.
@@ -57,22 +63,38 @@ double level_word(double level) {
 
 }  // namespace
 
-Frame place_frame(const Scene& scene, const PictureSettings& settings) {
-    if (!scene.view) throw std::invalid_argument("the scene has no view");
-    const View& view = *scene.view;
+Frame array_frame(const PictureSettings& settings) {
+    const int wide = settings.pixels_wide;
+    const int high = settings.pixels_high;
+    if (wide < 0 || high < 0 || wide % settings.width != 0 || high % settings.height != 0) {
+        const auto text = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+        throw std::invalid_argument(
+            "--pixels " + text(wide, high) + ": expected a whole multiple of --cells " +
+            text(settings.width, settings.height) + " each way; the two multiples may differ");
+    }
     Frame frame;
     frame.width = settings.width;
     frame.height = settings.height;
+    frame.block_width = settings.block_width();
+    frame.block_height = settings.block_height();
     frame.depth_levels = settings.depth_levels;
+    return frame;
+}
+
+Frame place_frame(const Scene& scene, const PictureSettings& settings) {
+    if (!scene.view) throw std::invalid_argument("the scene has no view");
+    const View& view = *scene.view;
+    Frame frame = array_frame(settings);
     frame.forward = glm::normalize(view.at - view.from);
     frame.right = glm::normalize(glm::cross(frame.forward, view.up));
     frame.down = glm::cross(frame.forward, frame.right);
     frame.viewer_at_infinity = settings.viewer == ViewerMode::infinity;
 
     // NFF's angle runs from the centre of the first to the centre of the last pixel row.
-    const double intervals = std::max(settings.height - 1, 1);
+    const double intervals = std::max(frame.picture_height() - 1, 1);
     const double tan_half = std::tan(glm::radians(view.angle) / 2);
-    const double tan_cell = 2 * tan_half / intervals;  // a cell's width over its distance
+    // A cell's width over its distance.
+    const double tan_cell = 2 * tan_half / intervals * frame.block_height;
     const double to_target = glm::length(view.at - view.from);
 
     const double hither = std::max(view.hither, 1e-6 * to_target);
@@ -83,7 +105,7 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
     for (const Primitive& primitive : scene.primitives) extent.add(visible_extent(primitive, axes, field));
     if (!(extent.near <= extent.far)) extent = {to_target, to_target};  // nothing to see: background
 
-    const double margin = margin_of(settings);
+    const double margin = margin_of(settings, frame);
     double near = extent.near - margin * tan_cell * to_target;
     // A nearer screen has smaller cells, so the margin shrinks with the distance. Nothing nearer than
     // `hither` is seen: a scene that is cut off there passes through the screen.
@@ -92,7 +114,8 @@ Frame place_frame(const Scene& scene, const PictureSettings& settings) {
     frame.cell_width = tan_cell * distance;
     const double far = extent.far + margin * frame.cell_width;
     frame.depth = settings.depth_levels *
-                  level_word(std::max((far - near) / frame.cell_width, 1.0) / settings.depth_levels);
+                  level_word(std::max((far - near) / frame.cell_width, 1 / frame.pixels_per_cell()) /
+                             settings.depth_levels);
     frame.corner = view.from + near * frame.forward -
                    0.5 * frame.cell_width *
                        (double(settings.width) * frame.right + double(settings.height) * frame.down);
@@ -165,7 +188,8 @@ CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSetti
         const auto first = std::uint32_t(placed.polygons.size());
         const auto number = std::size_t(&primitive - scene.primitives.data());
         const double chord_error = chord_errors.empty() ? settings.chord_error : chord_errors.at(number);
-        auto polygons = tessellate(primitive, first, frame, chord_error, &placed.warnings);
+        auto polygons =
+            tessellate(primitive, first, frame, chord_error / frame.pixels_per_cell(), &placed.warnings);
         if (auto surface = curved_surface(primitive, frame); surface && !polygons.empty()) {
             surface->first_polygon = first;
             surface->polygons = std::uint32_t(polygons.size());

@@ -1,6 +1,7 @@
 // Where the cube stands in the scene: world to cell coordinates, the screen, the primary rays.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -18,8 +19,11 @@ namespace raycell {
 /// Similarity from world to cell coordinates (x right, y down, z into the screen, all in cell widths) and the
 /// cube [0, width] x [0, height] x [0, depth]. The screen is z = 0 (design, section 3).
 struct Frame {
-    int width = 1;     ///< cells
-    int height = 1;    ///< cells
+    int width = 1;   ///< cells
+    int height = 1;  ///< cells
+    /// Pixels of a cell, across and down: its block. They are counted row by row from 0.
+    int block_width = 1;
+    int block_height = 1;
     double depth = 1;  ///< of the cube, in cell widths
     int depth_levels = 1;
     dvec3 right{1, 0, 0};    ///< unit, world
@@ -35,7 +39,27 @@ struct Frame {
     double level() const { return depth / depth_levels; }  ///< height of a depth level, cell widths
     Box cube() const { return {{0, 0, 0}, {double(width), double(height), depth}}; }
 
-    /// Origin on the screen and unit direction of the primary ray through (x, y) cells, pixel centre at +0.5.
+    int block() const { return block_width * block_height; }
+    int picture_width() const { return width * block_width; }
+    int picture_height() const { return height * block_height; }
+    /// Pixels along a cell's side, where they are finer.
+    double pixels_per_cell() const { return std::max(block_width, block_height); }
+    /// Index in the picture, row-major, of a pixel of cell (x, y)'s block.
+    std::size_t pixel_index(int x, int y, int pixel) const {
+        const int column = x * block_width + pixel % block_width;
+        const int row = y * block_height + pixel / block_width;
+        return std::size_t(row) * std::size_t(picture_width()) + std::size_t(column);
+    }
+    /// Centre of a pixel of a block, cell widths from the cell's corner.
+    dvec2 centre_in_block(int pixel) const {
+        return {(pixel % block_width + 0.5) / block_width, (pixel / block_width + 0.5) / block_height};
+    }
+    /// Centre of the picture's pixel (column, row), cell coordinates.
+    dvec2 pixel_centre(int column, int row) const {
+        return {(column + 0.5) / block_width, (row + 0.5) / block_height};
+    }
+
+    /// Origin on the screen and unit direction of the primary ray through (x, y), cell coordinates.
     struct PrimaryRay {
         dvec3 origin;
         dvec3 direction;
@@ -64,11 +88,15 @@ struct CellScene {
     std::array<bool, 6> beyond{};       ///< per Face: whether anything reaches beyond its plane
 };
 
+/// A frame of the settings' cells, pixels and levels, which stands nowhere yet. Throws std::invalid_argument
+/// if the pixels are no whole multiple of the cells.
+Frame array_frame(const PictureSettings& settings);
+
 /// Sets up the frame for a scene: the screen stands where the visible scene begins, the back of the cube
-/// where it ends. Throws std::invalid_argument if the scene has no view.
+/// where it ends. Throws std::invalid_argument if the scene has no view, and as array_frame() does.
 Frame place_frame(const Scene& scene, const PictureSettings& settings);
 
-/// Tessellates the whole scene into a frame. `chord_errors`, in cells, has one for every primitive, or is
+/// Tessellates the whole scene into a frame. `chord_errors`, in pixels, has one for every primitive, or is
 /// empty: all have that of the settings. Throws std::invalid_argument for more than max_sources sources.
 CellScene place_scene(const Scene& scene, const Frame& frame, const PictureSettings& settings,
                       const std::vector<double>& chord_errors = {});

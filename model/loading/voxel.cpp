@@ -250,6 +250,7 @@ void StorageCounts::add(const StorageCounts& other) {
     overflowed += other.overflowed;
     occupied_cells += other.occupied_cells;
     max_voxels = std::max(max_voxels, other.max_voxels);
+    max_needed = std::max(max_needed, other.max_needed);
     bits += other.bits;
     max_cell_bits = std::max(max_cell_bits, other.max_cell_bits);
 }
@@ -263,6 +264,7 @@ void StorageCounts::add(const CellStore& store, const VoxelBits& each) {
     overflowed += store.overflowed;
     occupied_cells += cell_voxels > 0;
     max_voxels = std::max(max_voxels, cell_voxels);
+    max_needed = std::max(max_needed, cell_voxels + store.overflowed);
     bits += cell_bits;
     max_cell_bits = std::max(max_cell_bits, cell_bits);
 }

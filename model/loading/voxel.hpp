@@ -72,6 +72,7 @@ struct StorageCounts {
     std::uint64_t overflowed = 0;
     std::uint64_t occupied_cells = 0;
     std::uint64_t max_voxels = 0;     ///< of one cell
+    std::uint64_t max_needed = 0;     ///< of one cell, with those that did not fit
     std::uint64_t bits = 0;           ///< of all cells' voxels and edges
     std::uint64_t max_cell_bits = 0;  ///< of one cell's
     void add(const CellStore& store, const VoxelBits& each);

@@ -20,8 +20,8 @@ Answer answer_to(const Ray& ray, Answer::Kind kind) {
 }
 
 int slot_address_bits(const PictureSettings& picture, const MachineSettings& machine) {
-    // A slot, or none (the pixel itself); verdicts on voxels name the voxel instead, up to 1024 in a cell.
-    const int slot = bits_for(machine.ray_store + 1);
+    // A slot or one of the own rays; verdicts on voxels name the voxel instead, up to 1024 in a cell.
+    const int slot = bits_for(machine.ray_store + own_rays_of(picture, machine));
     return picture.shadows == Shadows::per_hit ? slot : std::max(slot, field::voxel_index);
 }
 

@@ -1,6 +1,7 @@
 // The messages on the links, and how many bits each kind takes.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "model/geometry/sources.hpp"
@@ -47,7 +48,11 @@ struct MessageBits {
     int viewer = 0;
     std::array<int, std::size_t(source_kinds)> source{};  ///< by kind
 };
-/// Bits of the slot, or of the voxel, that an answer is for.
+/// Primary rays of a cell that may be under way at once.
+inline int own_rays_of(const PictureSettings& picture, const MachineSettings& machine) {
+    return std::min(machine.own_rays, picture.block());
+}
+/// Bits of the slot, the own ray or the voxel that an answer is for.
 int slot_address_bits(const PictureSettings& picture, const MachineSettings& machine);
 /// Bits of a ray's depth. Outside the cube, on the way to the border, a ray is before it or behind it: so
 /// there are more of them than for a depth in a voxel.

@@ -46,6 +46,17 @@ int start_bits(const MachineSettings& machine) {
     return std::max(0, bits_for(std::int64_t(machine.start_within)) - there);
 }
 
+/// Bits of what is known about the primary rays of a cell, beside the ray that waits to leave.
+int own_ray_bits(const PictureSettings& picture, const MachineSettings& machine,
+                 const MessageBits& messages) {
+    const int each = 2 + retry_bits(machine);  // to be sent, awaited
+    if (picture.block() == 1) return each;
+    const int rays = own_rays_of(picture, machine);
+    const int pixel = bits_for(picture.block());
+    const int next = bits_for(picture.block() + 1);
+    return rays * (each + pixel) + messages.ray + next + bits_for(rays);
+}
+
 /// Home, slot and child: where a ray's answer goes.
 int address_bits(const MessageBits& messages) { return messages.verdict - field::type; }
 
@@ -137,9 +148,10 @@ RegisterBits register_bits(const PictureSettings& picture, const MachineSettings
         bits.credits += bits_for(machine.buffer_depth + 1);  // as many outputs as inputs
     });
     const bool precast = picture.shadows == Shadows::precast;
-    bits.own_ray = sent_ray_bits(picture, messages, sources.sources() > 0, false) + 2 + retry_bits(machine) +
-                   start_bits(machine) +
+    bits.own_ray = sent_ray_bits(picture, messages, sources.sources() > 0, false) +
+                   own_ray_bits(picture, machine, messages) + start_bits(machine) +
                    (precast ? field::voxel_index + bits_for(std::int64_t(sources.lights)) : 0);
+    if (picture.block() > 1) bits.pixels = 3 * formats.word_bits * std::int64_t(picture.block());
     bits.decisions = (ray_inputs + 1) * decision_bits(formats);
     bits.ages += 2 * age;
     bits.credits += 2 * side_count * wire_bits(machine, ray);  // those that come in and those that leave

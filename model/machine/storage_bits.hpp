@@ -23,7 +23,12 @@ SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machin
 
 /// Registers beside buffers and slots, bits.
 struct RegisterBits {
-    int own_ray = 0;    ///< the injector's: a ray; whether it is to be sent, awaited; its back-off
+    /// The injector's: a ray; whether it is to be sent, awaited; its back-off. With a block of pixels: these
+    /// and the pixel for each own ray; the ray in the making; counters of pixels and turns.
+    int own_ray = 0;
+    /// The intensities of a block of pixels, from which the picture is read. That of a cell with one pixel
+    /// is not counted.
+    std::int64_t pixels = 0;
     int decisions = 0;  ///< of each ray input and the own ray, once it is tested
     int ages = 0;       ///< of each input, the own ray and the shading unit's reply: oldest first
     int credits = 0;    ///< places left behind each output, by class; cycles until wires are free
@@ -32,8 +37,9 @@ struct RegisterBits {
     int shading = 0;    ///< of the shading unit, with a hit that has no slot and its reply
     int loading = 0;    ///< of the loading units: spans at work, each with its object's features
     int latches = 0;    ///< viewer, background and sources, from the load messages
-    int total() const {
-        return own_ray + decisions + ages + credits + outputs + traversal + shading + loading + latches;
+    std::int64_t total() const {
+        return pixels + own_ray + decisions + ages + credits + outputs + traversal + shading + loading +
+               latches;
     }
 };
 RegisterBits register_bits(const PictureSettings& picture, const MachineSettings& machine,

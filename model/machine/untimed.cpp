@@ -65,23 +65,26 @@ void UntimedMachine::count_return(const Ray& ray, Place from, Pixel* pixel) {
 
 Picture UntimedMachine::render(const std::function<void(int)>& progress) {
     const Frame& frame = context_.scene.frame;
-    Picture picture(frame.width, frame.height);
+    Picture picture(frame.picture_width(), frame.picture_height());
     const bool trace_rays = context_.settings.stage == RunStage::trace;
     if (trace_rays && context_.settings.shadows == Shadows::precast) precast();
     precast_hops_ = rays_.ray_hops + rays_.return_hops;
-    for (int y = 0; y < frame.height; ++y) {
-        for (int x = 0; x < frame.width; ++x) {
-            Pixel& pixel = picture.at(x, y);
+    for (int row = 0; row < picture.height; ++row) {
+        for (int column = 0; column < picture.width; ++column) {
+            const int x = column / frame.block_width;
+            const int y = row / frame.block_height;
+            const int number = row % frame.block_height * frame.block_width + column % frame.block_width;
+            Pixel& pixel = picture.at(column, row);
             if (!trace_rays) {
-                pixel = display_cell(context_, cell({x, y}), x, y);
+                pixel = display_cell(context_, cell({x, y}), x, y, number);
                 continue;
             }
             record_background(pixel);
-            const Ray ray = primary_ray(context_, x, y);
+            const Ray ray = primary_ray(context_, x, y, number);
             count_ray(rays_, ray.kind);
             pixel.colour = trace(ray, x, y, &pixel).colour;
         }
-        if (progress) progress(y);
+        if (progress) progress(row);
     }
     return picture;
 }

@@ -19,7 +19,8 @@ Wire::Wire(const PictureSettings& picture, const MachineSettings& machine, const
       shadows_(picture.shadows),
       x_bits_(bits_for(picture.width)),
       y_bits_(bits_for(picture.height)),
-      slot_bits_(slot_address_bits(picture, machine)) {
+      slot_bits_(slot_address_bits(picture, machine)),
+      own_rays_(own_rays_of(picture, machine)) {
     if (picture.numbers.arithmetic == Numbers::exact)
         throw std::invalid_argument("the numbers of exact arithmetic are no words");
 }
@@ -71,7 +72,7 @@ void Wire::put_address(WireBits& bits, int x, int y, std::uint32_t slot, bool of
                        unsigned child) const {
     put_number(bits, "home x", std::uint64_t(x), x_bits_);
     put_number(bits, "home y", std::uint64_t(y), y_bits_);
-    put_number(bits, "slot", of_pixel ? no_slot() : slot, slot_bits_);
+    put_number(bits, "slot", of_pixel ? own_ray_code(slot) : slot, slot_bits_);
     put_number(bits, "child", child, field::child);
 }
 
@@ -125,7 +126,7 @@ Ray Wire::unpack_ray(WireBits bits, bool precast) const {
     } else if (ray.generation > 0) {
         ray.kind = ray.child == 0 ? RayKind::reflected : RayKind::refracted;
     }
-    ray.slot = ray.kind == RayKind::primary ? 0 : slot;
+    ray.slot = ray.kind == RayKind::primary ? own_ray_code(slot) : slot;
     return ray;
 }
 
@@ -157,9 +158,9 @@ Answer Wire::unpack_answer(WireBits bits, bool precast) const {
     answer.child = std::uint8_t(bits.get(field::child));
     if (verdict) {
         answer.ray_kind = verdict_kind(precast);
-    } else if (answer.slot == no_slot()) {
+    } else if (answer.slot > own_ray_code(std::uint32_t(own_rays_))) {
         answer.ray_kind = RayKind::primary;
-        answer.slot = 0;
+        answer.slot = own_ray_code(answer.slot);
     } else {
         answer.ray_kind = answer.child == 0 ? RayKind::reflected : RayKind::refracted;
     }
@@ -168,12 +169,13 @@ Answer Wire::unpack_answer(WireBits bits, bool precast) const {
 
 std::vector<WireField> Wire::layout(WireType type) const {
     const int word = formats_.word_bits;
-    const std::vector<WireField> address = {{"home x", x_bits_, "column of the cell that the answer goes to"},
-                                            {"home y", y_bits_, "its row"},
-                                            {"slot", slot_bits_, "slot or voxel there; all ones: the pixel"},
-                                            {"child", field::child,
-                                             "of the slot: 0 reflected, 1 refracted; of a "
-                                             "verdict: the source"}};
+    const std::vector<WireField> address = {
+        {"home x", x_bits_, "column of the cell that the answer goes to"},
+        {"home y", y_bits_, "its row"},
+        {"slot", slot_bits_, "slot or voxel there; of a primary ray all ones less the own ray's number"},
+        {"child", field::child,
+         "of the slot: 0 reflected, 1 refracted; of a "
+         "verdict: the source"}};
     std::vector<WireField> all = {{"type", field::type, std::to_string(int(type))}};
     if (type == WireType::ray || type == WireType::shadow_ray) {
         const std::string mantissa = "mantissa, exponent " + std::to_string(Formats::exponent_bits);

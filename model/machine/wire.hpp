@@ -40,7 +40,8 @@ class Wire {
     void put_reciprocal(WireBits& bits, const char* name, double value) const;
     double get_reciprocal(WireBits& bits, double direction) const;
     void put_address(WireBits& bits, int x, int y, std::uint32_t slot, bool of_pixel, unsigned child) const;
-    std::uint32_t no_slot() const { return (1U << slot_bits_) - 1; }
+    /// The codes of own rays are the last ones, counted down: own ray 0 is all ones.
+    std::uint32_t own_ray_code(std::uint32_t number) const { return (1U << slot_bits_) - 1 - number; }
     RayKind verdict_kind(bool precast) const;
 
     Formats formats_;
@@ -48,6 +49,7 @@ class Wire {
     int x_bits_;
     int y_bits_;
     int slot_bits_;
+    int own_rays_;
 };
 
 }  // namespace raycell

@@ -44,8 +44,15 @@ struct NumberSettings {
 
 /// Settings that the picture depends on: scene placement, voxels, ray tree. Both engines use all of them.
 struct PictureSettings {
-    int width = 128;          ///< cells, 1..4096
-    int height = 128;         ///< cells, 1..4096
+    int width = 128;   ///< cells, 1..4096
+    int height = 128;  ///< cells, 1..4096
+    /// Of the picture, a whole multiple of the cells each way, which may differ; 0: a pixel a cell.
+    int pixels_wide = 0;
+    int pixels_high = 0;
+    /// Pixels of a cell, across and down: its block.
+    int block_width() const { return pixels_wide > 0 ? pixels_wide / width : 1; }
+    int block_height() const { return pixels_high > 0 ? pixels_high / height : 1; }
+    int block() const { return block_width() * block_height(); }
     int depth_levels = 1024;  ///< 1..65536
     ViewerMode viewer = ViewerMode::scene;
     RunStage stage = RunStage::trace;
@@ -60,7 +67,8 @@ struct PictureSettings {
     /// Offset of a new ray's origin along the polygon's normal, to the side that the ray goes to, in cells;
     /// negative: as the arithmetic needs it.
     double normal_offset = -1;
-    /// Cells; the polygons of a curved object lie within half of it on either side of the surface.
+    /// Pixels (of the shorter side, where they are not square); the polygons of a curved object lie within
+    /// half of it on either side of the surface.
     double chord_error = 0.1;
     /// PSNR of the polygons' truth against the scene's that chooses a chord error per object, dB; 0: all
     /// objects have chord_error.
@@ -69,7 +77,8 @@ struct PictureSettings {
     NumberSettings numbers;
 };
 
-constexpr int most_units = 4;  ///< of a kind in a cell
+constexpr int most_units = 4;      ///< of a kind in a cell
+constexpr int most_own_rays = 16;  ///< of a cell under way at once
 
 /// Settings that only time depends on: by invariant 2 none of them changes the picture.
 struct MachineSettings {
@@ -78,6 +87,8 @@ struct MachineSettings {
     Networks networks = Networks::half;
     Recovery recovery = Recovery::postpone;
     Slots slots = Slots::reserved;
+    /// Primary rays of a cell that may be under way at once, 1..most_own_rays; no more than it has pixels.
+    int own_rays = 1;
     int link_bits = 20;  ///< bits that cross a link per cycle, >= 1
     /// Spans that a cell keeps until their voxels are made, those at work included, >= 1; 0: no limit. All
     /// but these stand in the voxels' memory.

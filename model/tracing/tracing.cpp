@@ -312,22 +312,32 @@ int waiting_generations(const Context& context) {
     return context.settings.max_depth + (shadows ? 1 : 0);
 }
 
-Ray primary_ray(const Context& context, int x, int y) {
+namespace {
+
+/// Centre of a pixel of a block on the screen, cell widths from the cell's corner.
+dvec3 centre_on_screen(const Context& context, int pixel) {
+    const Format& unit = context.arithmetic.formats().unit;
+    return context.arithmetic.hold(unit, dvec3(context.scene.frame.centre_in_block(pixel), 0));
+}
+
+}  // namespace
+
+Ray primary_ray(const Context& context, int x, int y, int pixel) {
     const Frame& frame = context.scene.frame;
     Ray ray;
-    ray.id = ray_id(std::uint64_t(y) * std::uint64_t(frame.width) + std::uint64_t(x), 0);
+    ray.id = ray_id(frame.pixel_index(x, y, pixel), 0);
     ray.home_x = std::uint16_t(x);
     ray.home_y = std::uint16_t(y);
     if (context.traffic) {
         context.traffic->start_primary(ray, context, x, y);
         return ray;
     }
-    ray.position = {0.5, 0.5, 0};
+    ray.position = centre_on_screen(context, pixel);
     const Arithmetic& arithmetic = context.arithmetic;
-    const dvec3 direction =
-        arithmetic.exact() || frame.viewer_at_infinity
-            ? frame.primary_ray(x + 0.5, y + 0.5).direction
-            : arithmetic.normalise(-arithmetic.way(dvec3(x + 0.5, y + 0.5, 0), context.eye));
+    const dvec3 at = ray.position + dvec3(x, y, 0);
+    const dvec3 direction = arithmetic.exact() || frame.viewer_at_infinity
+                                ? frame.primary_ray(at.x, at.y).direction
+                                : arithmetic.normalise(-arithmetic.way(at, context.eye));
     set_direction(ray, direction, arithmetic);
     return ray;
 }
@@ -387,10 +397,10 @@ dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t obj
     return combine_intensity(local, material, reflected, refracted, context.arithmetic);
 }
 
-Pixel display_cell(const Context& context, const CellStore& store, int x, int y) {
+Pixel display_cell(const Context& context, const CellStore& store, int x, int y, int pixel_of_block) {
     Pixel pixel;
     Ray ray;
-    ray.position = {0.5, 0.5, 0};
+    ray.position = centre_on_screen(context, pixel_of_block);
     ray.fresh = false;
     set_direction(ray, {0, 0, 1}, context.arithmetic);
     const auto hit = nearest_in_cell(store, ray, context.depth, context.settings.hit, context.arithmetic);

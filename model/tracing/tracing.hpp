@@ -111,8 +111,8 @@ bool may_wait(const Context& context, const Ray& ray, std::uint32_t object);
 /// Number of generations that may have to wait: `reserved` keeps one slot for each.
 int waiting_generations(const Context& context);
 
-/// Pixel (x, y)'s primary ray.
-Ray primary_ray(const Context& context, int x, int y);
+/// The primary ray of a pixel of cell (x, y)'s block.
+Ray primary_ray(const Context& context, int x, int y, int pixel = 0);
 
 /// Children of a ray that hit: the reflected (child 0), the refracted (child 1), a shadow ray (child =
 /// light).
@@ -131,15 +131,19 @@ Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32
 dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t object, std::uint64_t lit,
                 const dvec3& reflected, const dvec3& refracted);
 
+/// Cycles from a cell's primary ray to that of its next pixel, which the injector makes meanwhile; 0 with a
+/// pixel a cell, whose ray is made while the scene is loaded. A direction takes as long as one to a source.
+std::uint32_t primary_cycles(const Context& context, const CostTable& costs);
+
 /// Cycles of the shading unit.
 std::uint32_t setup_cycles(const Context& context, const HitSetup& setup, const CostTable& costs);
 /// `lit`: lights that face the surface and whose light arrives; `waited`: the hit was in a slot.
 std::uint32_t shade_cycles(const Context& context, const HitSetup& setup, std::uint32_t object,
                            std::uint64_t lit, bool waited, const CostTable& costs);
 
-/// A cell's pixel after loading (--stage load): its nearest voxel at the cell's centre along z, without
-/// shadows.
-Pixel display_cell(const Context& context, const CellStore& store, int x, int y);
+/// A pixel of a cell's block after loading (--stage load): its nearest voxel along z, without shadows.
+/// `gouraud`: a voxel has one intensity, so all pixels of the cell that see it are alike.
+Pixel display_cell(const Context& context, const CellStore& store, int x, int y, int pixel = 0);
 
 /// Records first-hit data in a pixel, from the primary ray's hit.
 void record_first_hit(Pixel& pixel, const HitSetup& setup, std::uint32_t polygon);

@@ -159,9 +159,7 @@ PictureSettings traffic_picture(int width, int height, int generations) {
 
 CellScene traffic_scene(const PictureSettings& picture, const TrafficSettings& traffic) {
     CellScene scene;
-    scene.frame.width = picture.width;
-    scene.frame.height = picture.height;
-    scene.frame.depth_levels = picture.depth_levels;
+    scene.frame = array_frame(picture);
     scene.background = {0.25, 0.5, 0.75};
     Material material;
     material.specular = traffic.reflected > 0 ? child_share : 0;

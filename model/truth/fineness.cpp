@@ -21,7 +21,8 @@ std::vector<double> chord_errors_at(const Scene& scene, const Frame& frame, doub
     for (const Primitive& primitive : scene.primitives) {
         double error = level;
         if (const auto* cone = std::get_if<ConePrimitive>(&primitive.shape)) {
-            const double radius = std::max(cone->base_radius, cone->apex_radius) / frame.cell_width;
+            const double radius =
+                std::max(cone->base_radius, cone->apex_radius) / frame.cell_width * frame.pixels_per_cell();
             error = std::pow(0.53 * level * level * std::sqrt(radius), 2.0 / 3);
         }
         errors.push_back(std::clamp(error, least, coarsest_chord_error));
@@ -31,7 +32,7 @@ std::vector<double> chord_errors_at(const Scene& scene, const Frame& frame, doub
 
 double told_chord_error(const Frame& frame, const PictureSettings& settings) {
     const Arithmetic arithmetic(settings.numbers, extent_of(frame));
-    return arithmetic.exact() ? 0 : 2 * arithmetic.formats().unit.step();
+    return arithmetic.exact() ? 0 : 2 * arithmetic.formats().unit.step() * frame.pixels_per_cell();
 }
 
 namespace {
@@ -77,16 +78,17 @@ class Trials {
         tree.beyond = outside ? &itself : nullptr;
         const TruthRenderer polygons(placed, tree);
         const TruthRenderer& truth = of == TruthOf::scene ? itself : polygons;
-        const int columns = std::min(frame_.width, most_each_way);
-        const int rows = std::min(frame_.height, most_each_way);
+        const int columns = std::min(frame_.picture_width(), most_each_way);
+        const int rows = std::min(frame_.picture_height(), most_each_way);
         std::vector<dvec3> colours(std::size_t(columns) * std::size_t(rows));
-        const auto centre = [](int i, int count, int pixels) {
-            return std::floor((i + 0.5) * pixels / count) + 0.5;
+        const auto spread = [](int i, int count, int pixels) {
+            return int(std::floor((i + 0.5) * pixels / count));
         };
         for_each_row(rows, threads_, {}, [&](int row) {
             for (int column = 0; column < columns; ++column) {
-                const Frame::PrimaryRay ray = frame_.primary_ray(centre(column, columns, frame_.width),
-                                                                 centre(row, rows, frame_.height));
+                const dvec2 at = frame_.pixel_centre(spread(column, columns, frame_.picture_width()),
+                                                     spread(row, rows, frame_.picture_height()));
+                const Frame::PrimaryRay ray = frame_.primary_ray(at.x, at.y);
                 colours[std::size_t(row) * std::size_t(columns) + std::size_t(column)] =
                     truth.radiance(ray.origin, ray.direction, no_polygon, 0, 1);
             }

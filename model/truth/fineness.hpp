@@ -8,21 +8,21 @@
 
 namespace raycell {
 
-/// A chord error for every primitive, cells, that costs few voxels for the accuracy
+/// A chord error for every primitive, pixels, that costs few voxels for the accuracy
 /// (docs/measured/tessellation.md). `level` is that of spheres; none is below `least` or above
 /// `coarsest_chord_error`.
 std::vector<double> chord_errors_at(const Scene& scene, const Frame& frame, double level, double least);
 
-constexpr double coarsest_chord_error = 0.5;  ///< cells
-constexpr double finest_chord_error = 1e-3;   ///< cells
+constexpr double coarsest_chord_error = 0.5;  ///< pixels
+constexpr double finest_chord_error = 1e-3;   ///< pixels
 
-/// The least chord error that words can tell from none, cells: both sides of a surface one step of a place in
-/// a cell apart.
+/// The least chord error that words can tell from none, pixels: both sides of a surface one step of a place
+/// in a cell apart.
 double told_chord_error(const Frame& frame, const PictureSettings& settings);
 
 struct Fineness {
     std::vector<double> chord_errors;  ///< of every primitive; empty for a scene without curved ones
-    double level = 0;                  ///< that of the spheres, cells
+    double level = 0;                  ///< that of the spheres, pixels
     double psnr_db = 200;  ///< of the polygons' truth against the scene's, where they were compared
     bool reached = true;   ///< psnr_db is no more than 0.5 below what was asked for
 };

@@ -103,8 +103,8 @@ class Sampler {
 
     /// False once the ray limit of a forecast is reached.
     bool may_go_on() const { return rays_ < most_rays; }
-    void primary(int x, int y) {
-        const Frame::PrimaryRay ray = scene_.frame.primary_ray(x + 0.5, y + 0.5);
+    void primary(const dvec2& at) {
+        const Frame::PrimaryRay ray = scene_.frame.primary_ray(at.x, at.y);
         follow({ray.origin, ray.direction, no_polygon}, 0, 1);
     }
     /// Follows a precast ray from a point of a polygon to a source; an unblocked one sends no answer.
@@ -242,7 +242,7 @@ void Sampler::shade(const TruthHit& hit, const dvec3& direction, int generation,
 double forecast_trace(const CellScene& scene, const PictureSettings& settings, const TruthRenderer& truth,
                       int samples) {
     const Frame& frame = scene.frame;
-    const double cells = double(frame.width) * frame.height;
+    const double pixels = double(frame.picture_width()) * frame.picture_height();
     // A low-discrepancy sequence in the plane: multiples of two powers of the plastic number.
     constexpr double alpha_x = 0.7548776662466927;
     constexpr double alpha_y = 0.5698402909980532;
@@ -253,9 +253,10 @@ double forecast_trace(const CellScene& scene, const PictureSettings& settings, c
             const double at = 0.5 + alpha * taken;
             return std::min(int((at - std::floor(at)) * size), size - 1);
         };
-        sampler.primary(place(alpha_x, frame.width), place(alpha_y, frame.height));
+        sampler.primary(frame.pixel_centre(place(alpha_x, frame.picture_width()),
+                                           place(alpha_y, frame.picture_height())));
     }
-    return sampler.hops * cells / taken;
+    return sampler.hops * pixels / taken;
 }
 
 /// Forecasts hops of a ray from every voxel to every source. Samples polygons evenly by their voxels, and

@@ -42,7 +42,7 @@ struct TruthRenderer::Tracer {
     }
     bool blocked(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, double reach) const;
     dvec3 leave(const dvec3& origin, const dvec3& direction, std::uint32_t exclude, Rank rank, double t);
-    void primary(double x, double y, Pixel& pixel);
+    void primary(const dvec2& at, Pixel& pixel);
 };
 
 ShadePoint TruthRenderer::point_at(const TruthHit& hit, const dvec3& direction) const {
@@ -147,9 +147,9 @@ dvec3 TruthRenderer::Tracer::trace(const dvec3& origin, const dvec3& direction, 
     return shade(truth.point_at(*hit, direction), *hit, rank);
 }
 
-/// Fills a pixel from the primary ray through (x, y) cells.
-void TruthRenderer::Tracer::primary(double x, double y, Pixel& pixel) {
-    const Frame::PrimaryRay ray = truth.scene_.frame.primary_ray(x, y);
+/// Fills a pixel from the primary ray through a point of the screen, cell coordinates.
+void TruthRenderer::Tracer::primary(const dvec2& at, Pixel& pixel) {
+    const Frame::PrimaryRay ray = truth.scene_.frame.primary_ray(at.x, at.y);
     ++counts.eye;
     const TruthRenderer* met = &truth;
     std::optional<TruthHit> hit;
@@ -217,24 +217,27 @@ dvec3 TruthRenderer::radiance(const dvec3& origin, const dvec3& direction, std::
 }
 
 Picture TruthRenderer::render(int threads, const Progress& progress) const {
-    Picture picture(scene_.frame.width, scene_.frame.height);
+    const Frame& frame = scene_.frame;
+    Picture picture(frame.picture_width(), frame.picture_height());
     for_each_row(picture.height, threads, progress, [&](int y) {
         Tracer tracer(*this, settings_);
-        for (int x = 0; x < picture.width; ++x) tracer.primary(x + 0.5, y + 0.5, picture.at(x, y));
+        for (int x = 0; x < picture.width; ++x) tracer.primary(frame.pixel_centre(x, y), picture.at(x, y));
     });
     return picture;
 }
 
 TruthCounts TruthRenderer::count(int n, int threads, const Progress& progress) const {
     if (n < 2) throw std::invalid_argument("rays are counted on a grid of at least 2 by 2");
-    // The field of view ends at the centres of the outermost cells (nff.md: `angle`).
-    const double step_x = (scene_.frame.width - 1.0) / (n - 1);
-    const double step_y = (scene_.frame.height - 1.0) / (n - 1);
+    // The field of view ends at the centres of the outermost pixels (nff.md: `angle`).
+    const Frame& frame = scene_.frame;
+    const dvec2 first = frame.pixel_centre(0, 0);
+    const dvec2 step =
+        (frame.pixel_centre(frame.picture_width() - 1, frame.picture_height() - 1) - first) / (n - 1.0);
     std::vector<TruthCounts> rows(static_cast<std::size_t>(n));
     for_each_row(n, threads, progress, [&](int y) {
         Tracer tracer(*this, {4, 0.0, true, settings_.of});
         Pixel unused;
-        for (int x = 0; x < n; ++x) tracer.primary(0.5 + x * step_x, 0.5 + y * step_y, unused);
+        for (int x = 0; x < n; ++x) tracer.primary(first + dvec2(x, y) * step, unused);
         rows[static_cast<std::size_t>(y)] = tracer.counts;
     });
     TruthCounts sum;

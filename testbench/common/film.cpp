@@ -17,6 +17,15 @@ std::uint32_t rays_inside(const Cell& cell) {
     return count;
 }
 
+/// Pixels of a cell's block that are complete.
+std::uint32_t done_pixels(const Environment& env, const Cell& cell) {
+    const raycell::Frame& frame = env.context.scene.frame;
+    std::uint32_t done = 0;
+    for (int pixel = 0; pixel < frame.block(); ++pixel)
+        done += env.picture.pixels[frame.pixel_index(cell.x(), cell.y(), pixel)].cycle > 0;
+    return done;
+}
+
 }  // namespace
 
 Film::Film(Machine& machine, int frames)
@@ -75,7 +84,7 @@ void Film::take(Reel& reel, Cycle cycle) const {
         add_messages(frame, cell, block);
         frame.maps[voxels][block] += std::uint32_t(cell.store().voxels.size());
         frame.maps[slots][block] += std::uint32_t(cell.ray_store().used());
-        frame.maps[pixels_done][block] += machine_.environment().picture.at(cell.x(), cell.y()).cycle > 0;
+        frame.maps[pixels_done][block] += done_pixels(machine_.environment(), cell);
     }
     reel.frames.push_back(std::move(frame));
     if (reel.frames.size() > most_) thin_out(reel);

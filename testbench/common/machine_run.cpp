@@ -46,14 +46,15 @@ double allowed_bytes() {
 /// cells, and rank 0 puts them together.
 double needed_bytes(const RenderOptions& options) {
     constexpr double untimed_cell = 200;
-    const double cells = double(options.picture.width) * options.picture.height;
-    if (options.engine == Engine::untimed) return cells * (untimed_cell + sizeof(Pixel));
+    const PictureSettings& p = options.picture;
+    const double cells = double(p.width) * p.height;
+    const double picture = cells * p.block() * sizeof(Pixel);
+    if (options.engine == Engine::untimed) return cells * untimed_cell + picture;
     const LaunchedRanks ranks = launched_ranks();
     const double pictures = ranks.count == 1 ? 2 : ranks.on_this_machine + 3;
     const double share = double(ranks.on_this_machine) / ranks.count;
-    return cells * pictures * sizeof(Pixel) +
-           share * Array::bytes(granularity_of(options), options.picture.width, options.picture.height,
-                                buffer_classes(options.machine.networks));
+    return pictures * picture + share * Array::bytes(granularity_of(options), p.width, p.height,
+                                                     buffer_classes(options.machine.networks));
 }
 
 std::string gigabytes(double bytes) {
@@ -165,8 +166,10 @@ std::string ring_of(const WaitGraph& waits) {
 void explain(const RunResult& result, const Bound& bound, const char* program) {
     if (result.verdict == Verdict::completed) return;
     std::cerr << program << ": verdict " << name_of(result.verdict);
-    if (result.verdict == Verdict::capacity) {
-        std::cerr << ": " << result.storage.overflowed << " voxels did not fit (--voxel-capacity)";
+    if (result.storage.overflowed > 0) {
+        std::cerr << ": " << result.storage.overflowed << " voxels did not fit (--voxel-capacity "
+                  << result.storage.max_voxels << "), the fullest cell would need "
+                  << result.storage.max_needed;
     }
     const bool stuck = result.verdict == Verdict::deadlock || result.verdict == Verdict::livelock;
     if (stuck && !bound.met()) std::cerr << ": " << bound.advice();

@@ -65,7 +65,8 @@ class OptionTable {
     void choice(const std::string& name, E& target, std::vector<std::pair<std::string, E>> values,
                 const std::string& help);
     /// --cells WxH
-    void size(const std::string& name, int& width, int& height, const std::string& help);
+    void size(const std::string& name, int& width, int& height, const std::string& help,
+              const std::string& none = "");
     /// --NAME X,Y or X0..X1,Y0..Y1, may come several times: cells of the array. The command must check that
     /// they lie inside it.
     void cells(const std::string& name, std::vector<CellRange>& target, const std::string& help);

@@ -193,7 +193,10 @@ std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& o
     if (picture.stage != RunStage::trace) {
         throw UsageError(std::string(name) + ": no ray is traced; expected --stage trace");
     }
-    const auto pixels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
+    const Frame frame = array_frame(picture);
+    const int wide = frame.picture_width();
+    const int high = frame.picture_height();
+    const auto pixels = std::uint64_t(wide) * std::uint64_t(high);
     auto watch = std::make_unique<RayWatch>(out, options.machine.networks, picture.width, picture.height);
     for (const std::uint64_t id : options.watch_rays) {
         if (pixel_of(id) >= pixels) {
@@ -203,14 +206,14 @@ std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& o
         watch->watch_ray(id);
     }
     for (const CellRange& range : options.watch_pixels) {
-        if (range.x1 >= picture.width || range.y1 >= picture.height) {
+        if (range.x1 >= wide || range.y1 >= high) {
             throw UsageError("--watch-pixel: there is no pixel (" + std::to_string(range.x1) + ", " +
-                             std::to_string(range.y1) + "); expected X below " +
-                             std::to_string(picture.width) + " and Y below " +
-                             std::to_string(picture.height));
+                             std::to_string(range.y1) + "); expected X below " + std::to_string(wide) +
+                             " and Y below " + std::to_string(high));
         }
         for (int y = range.y0; y <= range.y1; ++y) {
-            for (int x = range.x0; x <= range.x1; ++x) watch->watch_pixel(x, y);
+            for (int x = range.x0; x <= range.x1; ++x)
+                watch->watch_pixel(std::uint64_t(y) * std::uint64_t(wide) + std::uint64_t(x));
         }
     }
     return watch;

@@ -26,8 +26,8 @@ class RayWatch : public CellObserver {
 
     /// Watches a ray and its descendants.
     void watch_ray(std::uint64_t id) { roots_.emplace(id, false); }
-    /// Watches all rays of the tree of pixel (x, y). Precast rays belong to no tree.
-    void watch_pixel(int x, int y) { pixels_.insert(index(x, y)); }
+    /// Watches all rays of the tree of a pixel, by its index in the picture. Precast rays belong to no tree.
+    void watch_pixel(std::uint64_t pixel) { pixels_.insert(pixel); }
     /// Writes the events of the last cycle and a line per ray. `now`: the run's last cycle.
     void finish(Cycle now);
 

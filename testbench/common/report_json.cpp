@@ -101,10 +101,12 @@ const char* name_of(LoadedBy loading) {
 }
 
 Json registers_json(const RegisterBits& bits) {
-    return {{"own_ray", bits.own_ray}, {"decisions", bits.decisions}, {"ages", bits.ages},
-            {"credits", bits.credits}, {"outputs", bits.outputs},     {"traversal", bits.traversal},
-            {"shading", bits.shading}, {"loading", bits.loading},     {"latches", bits.latches},
-            {"total", bits.total()}};
+    Json json = {{"own_ray", bits.own_ray}, {"decisions", bits.decisions}, {"ages", bits.ages},
+                 {"credits", bits.credits}, {"outputs", bits.outputs},     {"traversal", bits.traversal},
+                 {"shading", bits.shading}, {"loading", bits.loading},     {"latches", bits.latches},
+                 {"total", bits.total()}};
+    if (bits.pixels > 0) json["pixels"] = bits.pixels;
+    return json;
 }
 
 }  // namespace
@@ -134,7 +136,8 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                       {"total", total}};
     const auto binding = [](const Binding& b) { return Json{{"cycles", b.cycles}, {"of", name_of(b)}}; };
     json["bound"] = {{"load", binding(result.load_binding)}, {"trace", binding(result.trace_binding)}};
-    const std::uint64_t pixels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
+    const std::uint64_t pixels =
+        std::uint64_t(picture.width) * std::uint64_t(picture.height) * std::uint64_t(picture.block());
     const bool whole = result.verdict == Verdict::completed || result.verdict == Verdict::capacity;
     json["pixels"] = {{"all", pixels}, {"completed", whole ? pixels : c.pixels_done}};
     json["simulated_seconds"] = double(total) / (machine.clock_mhz * 1e6);
@@ -187,6 +190,7 @@ Json report(const RunResult& result, const CellScene& scene, const PictureSettin
                       {"bits_total", storage.bits},
                       {"max_bits_per_cell", storage.max_cell_bits},
                       {"overflowed", storage.overflowed}};
+    json["voxels_needed"] = storage.max_needed;
     json["load_queue"] = {{"peak", c.most_kept},
                           {"max_bits_per_cell", std::max(c.most_load_bits, storage.max_cell_bits)}};
     const MessageBits messages = message_bits(picture, machine, formats);

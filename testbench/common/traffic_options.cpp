@@ -10,7 +10,12 @@ void add_traffic_options(OptionTable& table, TrafficOptions& options) {
                "writes PREFIX.json, PREFIX.toml, PREFIX.cells.csv and, of a run that stopped, "
                "PREFIX.waits.json and PREFIX.knot.svg; empty: no files");
     table.group("Traffic");
-    table.size("cells", p.width, p.height, "size of the array; each cell sends a primary ray");
+    table.size("cells", p.width, p.height, "size of the array");
+    table.size(
+        "pixels", p.pixels_wide, p.pixels_high,
+        "primary rays, a whole multiple of the cells each way: a cell sends those of a block of pixels; "
+        "cells: one each",
+        "cells");
     table.number("hit-probability", t.hit_probability, 0.0, 1.0,
                  "that a ray hits in a cell that it enters; never in the one that it starts from");
     table.number("generations", p.max_depth, 0, 62,

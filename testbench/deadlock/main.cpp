@@ -103,7 +103,9 @@ int run(TrafficOptions& options, const OptionTable& table) {
     OutputSet outputs(o.prefix);
     announce(o, outputs);
     check_memory(o);
-    const PictureSettings picture = traffic_picture(o.picture.width, o.picture.height, o.picture.max_depth);
+    PictureSettings picture = traffic_picture(o.picture.width, o.picture.height, o.picture.max_depth);
+    picture.pixels_wide = o.picture.pixels_wide;
+    picture.pixels_high = o.picture.pixels_high;
     o.machine.seed = options.traffic.seed;
     const SyntheticTraffic traffic(options.traffic);
     const CellScene scene = traffic_scene(picture, options.traffic);

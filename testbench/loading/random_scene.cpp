@@ -81,10 +81,8 @@ CellScene random_scene(const RandomPolygons& r, const PictureSettings& picture) 
         throw std::invalid_argument("--least-size is above --most-size; expected it to be at most that");
     }
     CellScene scene;
-    scene.frame.width = picture.width;
-    scene.frame.height = picture.height;
+    scene.frame = array_frame(picture);
     scene.frame.depth = r.depth;
-    scene.frame.depth_levels = picture.depth_levels;
     scene.frame.viewer_at_infinity = true;
     scene.sources.push_back({{0.5 * picture.width, 0, -r.depth}, dvec3(1)});
     Draws draws(r.seed);

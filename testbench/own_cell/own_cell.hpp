@@ -1,5 +1,5 @@
 // An example of a user's own cell: a plain SystemC module that forwards load messages, rays and answers and
-// sends its pixel's primary ray. Where no voxel lies, it can replace an array's cell (own_cell_test.cpp).
+// sends its pixels' primary rays. Where no voxel lies, it can replace an array's cell (own_cell_test.cpp).
 #pragma once
 
 #include <algorithm>
@@ -21,14 +21,17 @@ class OwnCell : public CellSocket {
           x_(x),
           y_(y),
           loading_(environment.machine.loading_units),
-          traversal_(environment.machine.traversal_units) {
+          traversal_(environment.machine.traversal_units),
+          injector_(environment.own_rays) {
         SC_METHOD(run);
         sensitive << woken();
         dont_initialize();
     }
     void begin_phase() override {
-        injector_.begin_phase(env_.phase == Phase::trace, start_of_primary(env_, x_, y_));
+        injector_.begin_phase(0, env_.phase == Phase::trace ? env_.context.scene.frame.block() : 0,
+                              start_of_primaries(env_, x_, y_));
     }
+    void begin_tree(int pixel) override { injector_.begin_phase(pixel, pixel + 1); }
 
   private:
     struct Place {
@@ -51,9 +54,9 @@ class OwnCell : public CellSocket {
             if (!store_.voxels.empty()) SC_REPORT_ERROR("own_cell", "a voxel lies here, and it can't trace");
         } else {
             traversal_.finish(now_, wakeup_, [](std::uint32_t) {});
-            if (!injector_.ray() && !env_.draining && injector_.primary_due(now_, wakeup_))
-                injector_.load(*launch(begin_primary(injector_, env_, x_, y_), env_));
-            pass();
+            pass_answers();
+            inject();
+            pass_rays();
             test();
         }
         if (wakeup_.next != never) env_.scheduler.wake(*this, wakeup_.next);
@@ -63,26 +66,44 @@ class OwnCell : public CellSocket {
         if (place.from) return place.from->front(place.index);
         return injector_.ray() ? Message(injector_.ray()) : Message();
     }
-    /// Passes on answers, then tested rays, oldest first.
-    void pass() {
-        std::vector<std::tuple<bool, Cycle, std::size_t>> ready;
+    void inject() {
+        if (injector_.ray() || env_.draining) return;
+        const auto number = injector_.primary_due(now_, wakeup_);
+        if (number) injector_.load(*launch(begin_primary(*number, injector_, env_, x_, y_), env_));
+    }
+    /// Passes on answers, oldest first.
+    void pass_answers() {
+        std::vector<std::pair<Cycle, std::size_t>> ready;
         for (std::size_t i = 0; i < places_.size(); ++i) {
-            const Message message = head(places_[i]);
-            if (message.kind == Message::Kind::answer)
-                ready.emplace_back(false, places_[i].from->arrival(places_[i].index), i);
-            else if (message.kind == Message::Kind::ray && message.ray->stage == RayPacket::Stage::decided)
-                ready.emplace_back(true, message.ray->decided, i);
+            if (head(places_[i]).kind == Message::Kind::answer)
+                ready.emplace_back(places_[i].from->arrival(places_[i].index), i);
         }
         std::sort(ready.begin(), ready.end());
-        for (const auto& [is_ray, since, i] : ready) {
-            const Place& place = places_[i];
-            const Message message = head(place);
-            const Cycle routed = is_ray ? since : since + env_.costs().route_return;
-            if (now_ < routed) wakeup_.at(routed);
-            if (now_ < routed || !(is_ray ? pass(*message.ray) : pass(message.answer))) continue;
-            place.from ? place.from->pop(place.index) : injector_.left();
-            if (!place.from || place.from->occupancy(place.index) > 0) wakeup_.at(now_ + 1);
+        for (const auto& [since, i] : ready) {
+            const Cycle routed = since + env_.costs().route_return;
+            if (now_ < routed) {
+                wakeup_.at(routed);
+            } else if (pass(head(places_[i]).answer)) {
+                remove_from(places_[i]);
+            }
         }
+    }
+    /// Passes on tested rays, oldest first.
+    void pass_rays() {
+        std::vector<std::pair<Cycle, std::size_t>> ready;
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            const Message message = head(places_[i]);
+            if (message.kind == Message::Kind::ray && message.ray->stage == RayPacket::Stage::decided)
+                ready.emplace_back(message.ray->decided, i);
+        }
+        std::sort(ready.begin(), ready.end());
+        for (const auto& [since, i] : ready) {
+            if (pass(*head(places_[i]).ray)) remove_from(places_[i]);
+        }
+    }
+    void remove_from(const Place& place) {
+        place.from ? place.from->pop(place.index) : injector_.left();
+        if (!place.from || place.from->occupancy(place.index) > 0) wakeup_.at(now_ + 1);
     }
 
     /// Delivers an answer that is home, one per cycle; sends others on. False: not possible now.

@@ -23,6 +23,10 @@ void check_golden(const RenderOptions& options) {
     if (options.engine == Engine::untimed) {
         throw UsageError("--golden: the untimed engine sends no messages; expected --engine timed");
     }
+    if (options.picture.block() > 1) {
+        throw UsageError(
+            "--golden: records are of cells with a pixel each; expected --pixels to be the --cells");
+    }
     check_inside("--golden", options.golden, options.picture);
     int cells = 0;
     for (const CellRange& range : options.golden)

@@ -142,7 +142,8 @@ Run run_untimed(const RenderOptions& options, const CellScene& scene, const Exte
     const bool progress = shows_progress(options);
     const auto traced = WallClock::now();
     result.picture = machine.render([&](int row) {
-        if (progress) std::cerr << "\rrow " << row + 1 << " of " << options.picture.height << std::flush;
+        if (progress)
+            std::cerr << "\rrow " << row + 1 << " of " << scene.frame.picture_height() << std::flush;
     });
     if (progress) end_progress();
     result.wall_trace = seconds_since(traced);

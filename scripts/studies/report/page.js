@@ -12,7 +12,7 @@
     return JSON.parse(await new Response(stream).text());
   }
   const data = await unpacked($("data").textContent.trim());
-  const {width, height} = data;
+  const {width, height, wide, high} = data;  // cells; pixels of the picture
 
   const make = (name, attributes, ...children) => {
     const element = document.createElement(name);
@@ -149,8 +149,8 @@
   function choose_under(event, element) {
     if (!data.rays) return;
     const box = element.getBoundingClientRect();
-    choose(clamp(Math.floor((event.clientX - box.left) / box.width * width), 0, width - 1),
-           clamp(Math.floor((event.clientY - box.top) / box.height * height), 0, height - 1));
+    choose(clamp(Math.floor((event.clientX - box.left) / box.width * wide), 0, wide - 1),
+           clamp(Math.floor((event.clientY - box.top) / box.height * high), 0, high - 1));
   }
   let chosen = null;
   const children = new Map(), roots = new Map();  // row numbers by parent's row and by pixel
@@ -159,7 +159,7 @@
     chosen = [x, y];
     $("ray-x").value = x;
     $("ray-y").value = y;
-    const tree = $("ray-tree"), lines = $("ray-lines"), top = roots.get(y * width + x);
+    const tree = $("ray-tree"), lines = $("ray-lines"), top = roots.get(y * wide + x);
     tree.replaceChildren();
     lines.replaceChildren();
     if (!top) {
@@ -169,7 +169,8 @@
       const heads = ["ray", "from", "ended in", "cycles", "took", "hops", "of answers", "waited", "postponed"];
       tree.append(make("table", {}, make("thead", {}, make("tr", {}, ...heads.map(h => make("th", {}, h)))), body));
       top.forEach(row => add_ray(body, lines, row, 0));
-      lines.append(svg("rect", {x, y, width: 1, height: 1, class: "chosen"}));
+      const across = width / wide, down = height / high;  // of a pixel, in cells
+      lines.append(svg("rect", {x: x * across, y: y * down, width: across, height: down, class: "chosen"}));
     }
     remember();
   }
@@ -199,15 +200,15 @@
 
   function difference() {
     const context_of = element => {
-      const canvas = make("canvas", {width, height});
+      const canvas = make("canvas", {width: wide, height: high});
       const context = canvas.getContext("2d", {willReadFrequently: true});
       context.drawImage(element, 0, 0);
-      return context.getImageData(0, 0, width, height);
+      return context.getImageData(0, 0, wide, high);
     };
     const [a, b] = [context_of($("picture")), context_of($("other-picture"))];
-    const canvas = $("difference"), out = canvas.getContext("2d"), picture = out.createImageData(width, height);
+    const canvas = $("difference"), out = canvas.getContext("2d"), picture = out.createImageData(wide, high);
     let differing = 0, most = 0;
-    for (let i = 0; i < width * height; ++i) {
+    for (let i = 0; i < wide * high; ++i) {
       let worst = 0;
       for (let c = 0; c < 3; ++c) {
         const apart = Math.abs(a.data[4 * i + c] - b.data[4 * i + c]);
@@ -220,9 +221,9 @@
     }
     out.putImageData(picture, 0, 0);
     $("difference-words").textContent = differing === 0 ? "no pixel differs"
-        : `${short(differing)} of ${short(width * height)} pixels differ, by up to ${most} of 255; shown four times as large`;
-    tell(canvas, width, height, (x, y) => {
-      const at = 4 * (y * width + x), rgb = d => `${d.data[at]}, ${d.data[at + 1]}, ${d.data[at + 2]}`;
+        : `${short(differing)} of ${short(wide * high)} pixels differ, by up to ${most} of 255; shown four times as large`;
+    tell(canvas, wide, high, (x, y) => {
+      const at = 4 * (y * wide + x), rgb = d => `${d.data[at]}, ${d.data[at + 1]}, ${d.data[at + 2]}`;
       return `(${x}, ${y}): ${rgb(a)} and ${rgb(b)}`;
     });
   }
@@ -255,8 +256,8 @@
       element.addEventListener("click", event => choose_under(event, element));
     }
     for (const id of ["ray-x", "ray-y"]) {
-      $(id).addEventListener("change", () => choose(clamp(Number($("ray-x").value), 0, width - 1),
-                                                    clamp(Number($("ray-y").value), 0, height - 1)));
+      $(id).addEventListener("change", () => choose(clamp(Number($("ray-x").value), 0, wide - 1),
+                                                    clamp(Number($("ray-y").value), 0, high - 1)));
     }
     if (wanted.has("pixel")) choose(...wanted.get("pixel").split(",").map(Number));
   }

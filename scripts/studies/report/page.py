@@ -59,6 +59,12 @@ def read_run(path):
     return report, int(width), int(height)
 
 
+def picture_size(report, width, height):
+    """Pixels of the picture of a run in so many cells, across and down."""
+    wide, _, high = str(report["config"].get("pixels", "")).partition("x")
+    return (int(wide), int(high)) if wide.isdigit() and high.isdigit() else (width, height)
+
+
 def text(value):
     return html.escape(str(value))
 
@@ -239,6 +245,7 @@ def page(path):
     cells = cells_of(path, width, height)
     hashes = report.get("hash", {})
     film, rays, limit = recordings(path, width, height)
+    wide, high = picture_size(report, width, height)
     engine = "" if report["cycles"]["total"] else " The untimed engine has no cycles, buffers or waiting."
     parts = [
         opening(f"{scene}, {width}x{height}: {verdict}"),
@@ -246,9 +253,9 @@ def page(path):
         f'<div class="head">{picture_part(path, width, height)}<div>',
         f'<div class="verdict {text(verdict)}">{text(verdict)}</div><p>{text(VERDICTS.get(verdict, ""))}.{engine}</p>',
         key_figures(report), "</div></div>", truth_part(path, report),
-        recorded.rays_part(rays, limit, width, height), deadlock_part(report, width, height),
+        recorded.rays_part(rays, limit, wide, high), deadlock_part(report, width, height),
         recorded.film_part(film, report_maps.shape(*blocks_of(film), 18) if film else "")]
-    charts = report_charts.activity([report], width * height)
+    charts = report_charts.activity([report], wide * high)
     if charts:
         each = plain(report["activity"]["bucket_cycles"])
         parts.append("<section><h2>Activity over time</h2><p>Over precast and trace, and for the loading apart: means "
@@ -259,7 +266,8 @@ def page(path):
     parts.append(configuration(config))
     parts.append(f"<p class=note>hash.image {text(hashes.get('image', ''))}, hash.schedule "
                  f"{text(hashes.get('schedule', ''))}</p>")
-    parts.append(closing({"width": width, "height": height, "maps": shown_maps(cells), "film": film, "rays": rays}))
+    parts.append(closing({"width": width, "height": height, "wide": wide, "high": high, "maps": shown_maps(cells),
+                          "film": film, "rays": rays}))
     return "\n".join(parts)
 
 
@@ -293,6 +301,9 @@ def page_of_two(first, second):
     (a, width, height), (b, *size) = runs
     if size != [width, height]:
         raise Failure(f"{second}: {size[0]} x {size[1]} cells; expected {width} x {height} as in {first}")
+    wide, high = picture_size(a, width, height)
+    if picture_size(b, width, height) != (wide, high):
+        raise Failure(f"{second}: a picture of another size; expected {wide} x {high} pixels as in {first}")
     cells = [cells_of(path, width, height) for path in (first, second)]
     files = [beside(path, ".png") for path in (first, second)]
     drawn, values = pair.maps(cells, width, height) if all(cells) else (
@@ -300,10 +311,11 @@ def page_of_two(first, second):
     images = [report_maps.data_uri(f.read_bytes()) if f else None for f in files]
     return "\n".join([
         opening(f"{first} and {second}"), f"<h1>Two runs in {width} × {height} cells</h1>",
-        f"<p>First: {text(first)}. Second: {text(second)}.</p>", pair.pictures(images, width, height),
+        f"<p>First: {text(first)}. Second: {text(second)}.</p>", pair.pictures(images, wide, high),
         f"<section><h2>What differs</h2>{pair.settings(a, b)}{pair.figures(a, b)}</section>",
         *(stuck_of(run, which, width, height) for run, which in ((a, "first"), (b, "second"))),
-        pair.charts(a, b, width * height), drawn, closing({"width": width, "height": height, "maps": values})])
+        pair.charts(a, b, wide * high), drawn,
+        closing({"width": width, "height": height, "wide": wide, "high": high, "maps": values})])
 
 
 def write(path, content):

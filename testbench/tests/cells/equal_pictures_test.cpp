@@ -70,8 +70,15 @@ Drawn draw(std::uint64_t seed) {
         m.recovery = Recovery(random.whole(0, 1));
         m.ray_store = random.whole(1, 16);
     }
-    drawn.text = drawn.scene + " at " + std::to_string(s.width) + "x" + std::to_string(s.height) + ", M " +
-                 std::to_string(m.ray_store) + ", buffers " + std::to_string(m.buffer_depth) + ", networks " +
+    property::Random blocks(seed + 5000000);  // of its own, so that the other draws stay what they were
+    if (blocks.chance(0.3)) {
+        s.pixels_wide = s.width * blocks.whole(1, 3);
+        s.pixels_high = s.height * blocks.whole(1, 3);
+        m.own_rays = blocks.whole(1, 5);
+    }
+    drawn.text = drawn.scene + " at " + std::to_string(s.width) + "x" + std::to_string(s.height) + ", " +
+                 std::to_string(s.block()) + " pixels a cell, M " + std::to_string(m.ray_store) +
+                 ", buffers " + std::to_string(m.buffer_depth) + ", networks " +
                  std::to_string(int(m.networks)) + ", hit " + std::to_string(int(s.hit)) + ", shadows " +
                  std::to_string(int(s.shadows)) + ", exterior " + std::to_string(int(s.exterior)) +
                  ", generations " + std::to_string(s.max_depth) + ", arithmetic " +

@@ -139,6 +139,10 @@ INSTANTIATE_TEST_SUITE_P(
              }},
         Case{"still_life", Verdict::completed,
              [](PictureSettings& p, MachineSettings&) { p.stage = RunStage::load; }},
+        Case{"cornell", Verdict::completed,
+             [](PictureSettings& p, MachineSettings& m) {
+                 p.pixels_wide = 36, p.pixels_high = 24, m.own_rays = 3, m.stall = 0.2;
+             }},
         Case{"facing_mirrors", Verdict::completed,
              [](PictureSettings& p, MachineSettings& m) {
                  p.exterior = ExteriorMode::none, m.ray_store = 5, m.slots = Slots::nested, m.stall = 0.1;

@@ -7,14 +7,16 @@ namespace raycell {
 namespace {
 
 /// Runs a scene with own cells in all places without voxels, on each kind of network.
-class OwnCells : public ::testing::TestWithParam<std::tuple<const char*, Networks, int>> {};
+class OwnCells : public ::testing::TestWithParam<std::tuple<const char*, Networks, int, int>> {};
 
 TEST_P(OwnCells, InPlaceOfEmptyOnesChangeNeitherThePictureNorAnyCycle) {
     expect_first_elaboration();
-    const auto& [scene, networks, depth] = GetParam();
+    const auto& [scene, networks, depth, block] = GetParam();
     PictureSettings settings;
     settings.width = settings.height = 24;
+    settings.pixels_wide = settings.pixels_high = 24 * block;
     MachineSettings machine;
+    machine.own_rays = 2;
     machine.networks = networks;
     machine.buffer_depth = depth;
     machine.ray_store = 5;  // some rays are postponed and sent again
@@ -53,7 +55,11 @@ TEST_P(OwnCells, InPlaceOfEmptyOnesChangeNeitherThePictureNorAnyCycle) {
 INSTANTIATE_TEST_SUITE_P(OnScenes, OwnCells,
                          ::testing::Combine(::testing::Values("still_life", "facing_mirrors"),
                                             ::testing::Values(Networks::half, Networks::quadrant),
-                                            ::testing::Values(1, 3)));
+                                            ::testing::Values(1, 3), ::testing::Values(1)));
+INSTANTIATE_TEST_SUITE_P(OfBlocksOfPixels, OwnCells,
+                         ::testing::Combine(::testing::Values("still_life"),
+                                            ::testing::Values(Networks::half), ::testing::Values(1),
+                                            ::testing::Values(2)));
 
 }  // namespace
 }  // namespace raycell

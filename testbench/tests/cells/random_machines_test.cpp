@@ -71,7 +71,7 @@ struct Drawn {
     std::string text;
 };
 
-void draw_picture(Drawn& drawn, property::Random& random) {
+void draw_picture(Drawn& drawn, std::uint64_t seed, property::Random& random) {
     PictureSettings& s = drawn.settings;
     const int shape = random.whole(0, 9);
     s.width = shape == 0 ? 1 : random.whole(2, 7);
@@ -85,6 +85,12 @@ void draw_picture(Drawn& drawn, property::Random& random) {
     s.min_weight = random.chance(0.3) ? 1.0 / 256 : 0;
     s.numbers.arithmetic = random.chance(0.5) ? Numbers::exact : Numbers::fixed;
     s.numbers.word_bits = random.whole(12, 24);
+    property::Random blocks(seed + 5000000);  // of its own, so that the other draws stay what they were
+    if (blocks.chance(0.4)) {
+        s.pixels_wide = s.width * blocks.whole(1, 3);
+        s.pixels_high = s.height * blocks.whole(1, 3);
+        drawn.machine.own_rays = blocks.whole(1, 5);
+    }
     if (random.chance(0.25)) {
         const char* const own[] = {"cornell", "facing_mirrors", "still_life"};
         const char* const name = own[random.whole(0, 2)];
@@ -95,6 +101,8 @@ void draw_picture(Drawn& drawn, property::Random& random) {
     drawn.placed = std::make_unique<PlacedScene>();
     drawn.placed->scene = random_scene(random, s.width, s.height);
     drawn.placed->scene.frame.depth_levels = s.depth_levels;
+    drawn.placed->scene.frame.block_width = s.block_width();
+    drawn.placed->scene.frame.block_height = s.block_height();
     drawn.placed->truth = std::make_unique<TruthRenderer>(
         drawn.placed->scene, TruthSettings{s.max_depth, s.min_weight, false, TruthOf::scene, nullptr, 4});
     drawn.placed->exterior = std::make_unique<ClassicalExterior>(drawn.placed->scene, *drawn.placed->truth);
@@ -129,16 +137,17 @@ void draw_machine(Drawn& drawn, property::Random& random) {
 Drawn draw(std::uint64_t seed) {
     property::Random random(seed);
     Drawn drawn;
-    draw_picture(drawn, random);
+    draw_picture(drawn, seed, random);
     drawn.least = std::max(1, waiting_generations(Context(drawn.placed->scene, drawn.settings)));
     draw_machine(drawn, random);
     const PictureSettings& s = drawn.settings;
     const MachineSettings& m = drawn.machine;
     const char* const networks[] = {"shared", "split", "quadrant", "half"};
     const char* const slots[] = {"reserved, ", "free, ", "nested, "};
-    drawn.text += std::to_string(s.width) + "x" + std::to_string(s.height) + ", M " +
-                  std::to_string(m.ray_store) + " (bound " + std::to_string(drawn.least) + "), buffers " +
-                  std::to_string(m.buffer_depth) + ", " + networks[int(m.networks)] + ", " +
+    drawn.text += std::to_string(s.width) + "x" + std::to_string(s.height) + ", " +
+                  std::to_string(s.block()) + " pixels a cell, " + std::to_string(m.own_rays) +
+                  " own rays, M " + std::to_string(m.ray_store) + " (bound " + std::to_string(drawn.least) +
+                  "), buffers " + std::to_string(m.buffer_depth) + ", " + networks[int(m.networks)] + ", " +
                   slots[int(m.slots)] + (m.recovery == Recovery::none ? "none" : "postpone") + ", links " +
                   std::to_string(m.link_bits) + ", shadows " + std::to_string(int(s.shadows)) + ", samples " +
                   std::to_string(s.source_samples) + ", stall " + std::to_string(m.stall) + ", exterior " +
@@ -222,7 +231,7 @@ void expect_conserved(const Environment& environment, bool completed) {
 void expect_true_verdict(const Drawn& drawn, Machine& machine, const RunResult& result,
                          const Picture& golden) {
     const MachineSettings& m = drawn.machine;
-    const auto pixels = std::uint64_t(drawn.settings.width) * std::uint64_t(drawn.settings.height);
+    const std::uint64_t pixels = golden.pixels.size();
     expect_conserved(machine.environment(), result.verdict == Verdict::completed);
     switch (result.verdict) {
         case Verdict::completed:

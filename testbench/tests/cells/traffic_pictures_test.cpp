@@ -28,6 +28,12 @@ Drawn draw(std::uint64_t seed) {
     const int height = random.chance(0.15) ? 1 : random.whole(2, 20);
     drawn.picture = traffic_picture(width, height, random.whole(0, 4));
     MachineSettings& m = drawn.machine;
+    property::Random blocks(seed + 5000000);  // of its own, so that the other draws stay what they were
+    if (blocks.chance(0.4)) {
+        drawn.picture.pixels_wide = width * blocks.whole(1, 3);
+        drawn.picture.pixels_high = height * blocks.whole(1, 3);
+        m.own_rays = blocks.whole(1, 5);
+    }
     m.seed = seed;
     m.buffer_depth = random.whole(1, 4);
     m.link_bits = random.chance(0.3) ? random.whole(1, 8) : random.whole(9, 300);
@@ -45,7 +51,8 @@ Drawn draw(std::uint64_t seed) {
     for (const auto& [name, member] : CostTable::entries()) {
         if (random.chance(0.3)) m.costs.*member = std::uint32_t(random.whole(1, 60));
     }
-    drawn.text = std::to_string(width) + "x" + std::to_string(height) + ", hits " +
+    drawn.text = std::to_string(width) + "x" + std::to_string(height) + ", " +
+                 std::to_string(drawn.picture.block()) + " pixels a cell, hits " +
                  std::to_string(t.hit_probability) + ", generations " +
                  std::to_string(drawn.picture.max_depth) + ", sources " + std::to_string(t.sources) +
                  ", directions " + std::to_string(int(t.directions)) + ", M " + std::to_string(m.ray_store) +

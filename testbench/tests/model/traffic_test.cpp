@@ -387,6 +387,26 @@ TEST(StorageBits, OfRegistersFollowTheMachine) {
     EXPECT_GT(bits().own_ray, plain.own_ray);
 }
 
+TEST(StorageBits, OfABlockOfPixelsAreItsIntensitiesItsOwnRaysAndCounters) {
+    Sized sized;
+    const auto bits = [&] { return register_bits(sized.picture, sized.machine, sized.formats, 1); };
+    const RegisterBits plain = bits();
+    EXPECT_EQ(plain.pixels, 0);
+    sized.machine.own_rays = 4;
+    EXPECT_EQ(bits().total(), plain.total()) << "a cell has no more own rays than pixels";
+    sized.picture.pixels_wide = 8 * sized.picture.width;
+    sized.picture.pixels_high = 4 * sized.picture.height;
+    // Per own ray 2 bits, attempts and back-off, a pixel of 32; the ray in the making; 33 values of a counter
+    // of pixels, whose turn it is.
+    const MessageBits messages = message_bits(sized.picture, sized.machine, sized.formats);
+    EXPECT_EQ(messages.ray, 256) << "M + 4 values need the same 4 bits";
+    EXPECT_EQ(bits().own_ray, 256 + 4 * (2 + 17 + 5) + 256 + 6 + 2);
+    EXPECT_EQ(bits().pixels, 32 * 3 * 20);
+    EXPECT_EQ(bits().total() - plain.total(), bits().own_ray - plain.own_ray + bits().pixels);
+    sized.machine.own_rays = 9;
+    EXPECT_EQ(message_bits(sized.picture, sized.machine, sized.formats).ray, 257) << "17 values need 5";
+}
+
 TEST(StorageBits, OfTheRayStoreGrowWithItsSlotsAndShrinkWithoutRecovery) {
     Sized sized;
     const auto store = [&](int slots) {

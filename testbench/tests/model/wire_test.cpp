@@ -30,6 +30,11 @@ Setting any_setting(property::Random& random) {
     s.picture.height = random.whole(1, 200);
     s.picture.shadows = Shadows(random.whole(0, 2));
     s.machine.ray_store = random.whole(1, 20);
+    if (random.chance(0.5)) {
+        s.picture.pixels_wide = s.picture.width * random.whole(1, 4);
+        s.picture.pixels_high = s.picture.height * random.whole(1, 4);
+        s.machine.own_rays = random.whole(1, most_own_rays);
+    }
     s.extent = {s.picture.width, s.picture.height, random.uniform(1, 400), 0.25};
     return s;
 }
@@ -68,7 +73,10 @@ Ray any_ray(const Setting& s, property::Random& random) {
     }
     ray.weight = arithmetic.hold(f.unit, random.uniform(0, 1));
     ray.generation = std::uint8_t(random.whole(0, 62));
-    if (ray.generation == 0) return ray;
+    if (ray.generation == 0) {
+        ray.slot = std::uint32_t(random.whole(0, own_rays_of(s.picture, s.machine) - 1));
+        return ray;
+    }
     ray.child = std::uint8_t(random.whole(0, 1));
     ray.kind = ray.child == 0 ? RayKind::reflected : RayKind::refracted;
     ray.slot = std::uint32_t(random.whole(0, s.machine.ray_store - 1));

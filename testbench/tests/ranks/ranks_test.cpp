@@ -85,6 +85,11 @@ TEST(Ranks, MakeTheSameRunWithTheExterior) {
     expect_same(own_scene("cornell.nff"), {"--cells", "20x26"});
 }
 
+TEST(Ranks, MakeTheSameRunWithBlocksOfPixels) {
+    SKIP_WITHOUT_MPI();
+    expect_same(own_scene("cornell.nff"), {"--cells", "12x10", "--pixels", "24x30", "--own-rays", "2"});
+}
+
 TEST(Ranks, MakeTheSameRunWithRowsCutAnywhere) {
     SKIP_WITHOUT_MPI();
     const Workshop workshop;

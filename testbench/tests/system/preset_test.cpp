@@ -81,8 +81,9 @@ TEST(Preset, ThePrototypeHoldsSixteenVoxelsInEachOfItsCells) {
     const Workshop workshop;
     // At its own rung no cell needs so many; at `edge` some need more.
     const Json report = workshop.report(own_scene("still_life.nff"),
-                                        {"--preset", "prototype", "--hit", "edge", "--networks", "half"}, 4);
-    EXPECT_EQ(report["pixels"]["all"], 256);
+                                        {"--preset", "prototype", "--hit", "edge", "--stage", "load"}, 4);
+    EXPECT_EQ(report["pixels"]["all"], 1024 * 1024);
+    EXPECT_GT(report["voxels_needed"], 16) << "how many voxels its fullest cell would have to hold";
     EXPECT_EQ(report["config"]["depth"], 1024);
     EXPECT_EQ(report["voxels"]["max_per_cell"], 16);
     EXPECT_EQ(report["verdict"], "capacity");
@@ -134,7 +135,8 @@ TEST(Preset, EveryOneIsTakenByEveryProgramThatHasTheOption) {
     const std::string scene = own_scene("cornell.nff").string();
     ASSERT_EQ(presets().size(), 3U);
     for (const std::string& name : presets()) {
-        const Words words = {"--preset", name, "--cells", "6x6", "--quiet", "-o", "results/a"};
+        const Words words = {"--preset", name,      "--cells", "6x6",      "--pixels",
+                             "cells",    "--quiet", "-o",      "results/a"};
         const auto ends = [&](const Finished& finished) {
             EXPECT_TRUE(finished.exit_code == 0 || finished.exit_code == 3) << name << ": " << finished.err;
         };

@@ -11,6 +11,7 @@ const char* const keys[] = {
     "/config",
     "/pixels/all",
     "/pixels/completed",
+    "/voxels_needed",
     "/bound/load/cycles",
     "/bound/trace/of",
     "/feed_bits/wires",
