@@ -31,9 +31,11 @@ void Cell::begin_phase() {
     if (env_.context.settings.shadows == Shadows::memo && env_.phase == Phase::trace) {
         asked_.assign(store_.voxels.size(), 0);
     }
-    injector_.begin_phase(0, env_.phase == Phase::trace ? env_.context.scene.frame.block() : 0,
-                          start_of_primaries(env_, x_, y_));
+    begin_tracing(injector_, env_, 0, env_.phase == Phase::trace ? env_.settings.block() : 0,
+                  start_of_primaries(env_, x_, y_));
 }
+
+void Cell::begin_tree(int pixel) { begin_tracing(injector_, env_, pixel, pixel + 1, 0); }
 
 Cycle Cell::step(Cycle now) {
     wakeup_ = Wakeup();

@@ -47,7 +47,7 @@ class alignas(64) Cell final : public Client {
     void begin_phase();
 
     /// Begins with the tree of a pixel of its block once more, in a phase trace that is over.
-    void begin_tree(int pixel) { injector_.begin_phase(pixel, pixel + 1); }
+    void begin_tree(int pixel);
 
     /// Runs one cycle. Returns the next cycle in which the cell must run without being woken; `never` if
     /// there is none.

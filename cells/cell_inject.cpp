@@ -55,7 +55,8 @@ RayPacket* Cell::next_child(Slot& slot, std::uint32_t index, Cycle now) {
             asked_[hit.voxel] |= bit;
             ++env_.meters.counters.rays.shadow;
             Ray ray = voxel_shadow_ray(env_.context, store_, hit.voxel, source, RayKind::memo, x_, y_);
-            ray.id = ray_id(pixel_of(parent.id), branch_of(ray.id));  // its hops belong to this pixel
+            ray.id = ray_id(pixel_of(parent.id), branch_of(ray.id),
+                            sample_of_id(parent.id));  // its hops belong to this pixel
             return launch(ray, &parent);
         }
         ++env_.meters.counters.rays.shadow;

@@ -54,7 +54,7 @@ void Cell::start_shading(Cycle now) {
         cycles = ShadingUnit::shade(slot, store_, env_.context, env_.costs());
     } else {
         cycles = ShadingUnit::set_up(slot, store_, env_.context, env_.costs(), x_, y_);
-        if (ray.kind == RayKind::primary) {
+        if (shows_first_hit(ray)) {
             record_first_hit(env_.picture.pixels[pixel_of(ray.id)], slot.setup,
                              store_.voxels[slot.packet->visit.hit.voxel].polygon);
         }
@@ -68,7 +68,7 @@ void Cell::begin_direct(RayPacket& packet, Cycle now) {
     tell(now, CellEvent::direct, packet.ray.id, 0);
     const CellHit& hit = packet.visit.hit;
     const HitSetup setup = set_up_hit(env_.context, store_, packet.ray, hit, x_, y_);
-    if (packet.ray.kind == RayKind::primary) {
+    if (shows_first_hit(packet.ray)) {
         record_first_hit(env_.picture.pixels[pixel_of(packet.ray.id)], setup,
                          store_.voxels[hit.voxel].polygon);
     }

@@ -12,6 +12,7 @@
 #include "model/machine/load_wire.hpp"
 #include "model/machine/wire.hpp"
 #include "model/picture/picture.hpp"
+#include "model/tracing/pixel_sum.hpp"
 
 namespace raycell {
 
@@ -75,6 +76,7 @@ struct Environment : CellConfig {
     const ArrayShare share;
     Scheduler& scheduler;
     Picture& picture;
+    std::vector<PixelSum> sums;  ///< of every pixel; empty with one sample a pixel
     MessagePools pools;
     Pool<TimeOut::Counts> wait_counts;
     Meters meters;
@@ -104,7 +106,8 @@ struct Environment : CellConfig {
         : CellConfig(scene, picture_settings, machine_settings, traffic),
           share(part ? *part : ArrayShare(scene.frame.height)),
           scheduler(s),
-          picture(p) {
+          picture(p),
+          sums(settings.samples > 1 ? p.pixels.size() : 0) {
         meters.pixel_hops.resize(p.pixels.size());
     }
 

@@ -36,17 +36,47 @@ Cycle start_of_primaries(const Environment& environment, int x, int y) {
     return environment.phase_start + 1 + Retry::first_start(environment.machine, ray_id(first, 0));
 }
 
+void begin_tracing(Injector& injector, const Environment& environment, int pixel, int last, Cycle start) {
+    const PictureSettings& settings = environment.settings;
+    injector.begin_phase(pixel * settings.samples, last * settings.samples, start);
+    if (may_stop_early(settings))
+        injector.go_on(pixel * settings.samples, pixel * settings.samples + first_samples);
+}
+
 Ray begin_primary(unsigned number, Injector& injector, Environment& environment, int x, int y) {
     const Cycle made = environment.scheduler.now() + Cycle(environment.primary_cycles);
     const bool first = injector.primary_sent(number, made);
-    Ray ray = primary_ray(environment.context, x, y, injector.pixel(number));
+    Ray ray = primary_ray(environment.context, x, y, injector.sample(number));
     ray.slot = number;
     if (first) {
         ++environment.meters.counters.rays.primary;
-        record_background(environment.picture.pixels[pixel_of(ray.id)]);
+        if (sample_of_id(ray.id) == 0) {
+            record_background(environment.picture.pixels[pixel_of(ray.id)]);
+            if (!environment.sums.empty()) environment.sums[pixel_of(ray.id)] = PixelSum();
+        }
     }
     return ray;
 }
+
+namespace {
+
+/// Adds a sample to its pixel. True if the pixel is complete.
+bool add_sample(Pixel& pixel, PixelSum& sum, const dvec3& intensity, int number, Injector& injector,
+                const Context& context) {
+    const PictureSettings& settings = context.settings;
+    sum.add(intensity, context.arithmetic);
+    const bool complete = is_complete(sum, settings, context.arithmetic);
+    if (may_stop_early(settings) && sum.count() == first_samples) {
+        const int next = (number / settings.samples + 1) * settings.samples;  // the next pixel's first
+        injector.go_on(complete ? next : next - settings.samples + first_samples, next + first_samples);
+    }
+    if (!complete) return false;
+    pixel.colour = sum.mean(context.arithmetic);
+    pixel.samples = std::uint32_t(sum.count());
+    return true;
+}
+
+}  // namespace
 
 void end_primary(const Answer& answer, Injector& injector, Environment& environment, int x, int y) {
     const Cycle now = environment.scheduler.now();
@@ -54,11 +84,17 @@ void end_primary(const Answer& answer, Injector& injector, Environment& environm
         injector.primary_postponed(answer.slot, environment.machine, answer.id, now);
         return;
     }
-    const Frame& frame = environment.context.scene.frame;
-    Pixel& pixel = environment.picture.pixels[frame.pixel_index(x, y, injector.pixel(answer.slot))];
-    pixel.colour = answer.colour;
-    pixel.cycle = std::uint32_t(now - environment.phase_start);
+    const Context& context = environment.context;
+    const int number = injector.sample(answer.slot);
+    const std::size_t at = context.scene.frame.pixel_index(x, y, number / context.settings.samples);
+    Pixel& pixel = environment.picture.pixels[at];
     injector.primary_answered(answer.slot);
+    if (environment.sums.empty()) {
+        pixel.colour = answer.colour;
+    } else if (!add_sample(pixel, environment.sums[at], answer.colour, number, injector, context)) {
+        return;
+    }
+    pixel.cycle = std::uint32_t(now - environment.phase_start);
     ++environment.meters.counters.pixels_done;
 }
 

@@ -52,6 +52,9 @@ void end_ray(RayPacket& packet, Environment& environment, CellMeter& meter);
 RayPacket* launch(const Ray& ray, Environment& environment);
 /// First cycle in which cell (x, y) may send a primary ray in the phase that begins now.
 Cycle start_of_primaries(const Environment& environment, int x, int y);
+/// The primary rays of the pixels from `pixel` to last - 1 of a cell's block must be sent, from cycle `start`
+/// on.
+void begin_tracing(Injector& injector, const Environment& environment, int pixel, int last, Cycle start);
 /// Returns the primary ray of cell (x, y) that is due, and notes it as sent.
 Ray begin_primary(unsigned number, Injector& injector, Environment& environment, int x, int y);
 /// Handles the answer to a primary ray of cell (x, y), which may be a postponed notice.

@@ -3,6 +3,7 @@
 // phase precast, the precast rays of its voxels.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -19,12 +20,17 @@ class Injector {
     explicit Injector(int own_rays)
         : own_(new OwnRay[std::size_t(own_rays)]), count_(std::uint8_t(own_rays)) {}
 
-    /// Begins a phase; the primary rays of the pixels first to last - 1 of the block must be sent in it, from
-    /// cycle `start` on.
+    /// Begins a phase; the primary rays of the samples first to last - 1 must be sent in it, from cycle
+    /// `start` on. They are numbered through all pixels of the cell's block.
     void begin_phase(int first, int last, Cycle start = 0) {
         next_ = std::uint32_t(first);
-        pixels_ = std::uint32_t(last);
+        end_ = stop_ = std::uint32_t(last);
         made_ = start;
+    }
+    /// The next sample to be sent is `next`; from `stop` on none is before this is called again.
+    void go_on(int next, int stop) {
+        next_ = std::min(std::uint32_t(next), end_);
+        stop_ = std::min(std::uint32_t(stop), end_);
     }
 
     /// The own ray that waits to leave; null if the register is free.
@@ -36,17 +42,17 @@ class Injector {
     /// beside the others.
     bool primary_to_send() const { return to_send_ || begins_another(); }
     /// The number of the primary ray that may be sent now: of those that were postponed the next in turn, or
-    /// that of the next pixel. If only later, asks for a step in that cycle.
+    /// the next sample's. If only later, asks for a step in that cycle.
     std::optional<unsigned> primary_due(Cycle now, Wakeup& wakeup) const;
-    /// Notes that a primary ray was sent; true the first time. Then the next pixel's ray is made, and can be
+    /// Notes that a primary ray was sent; true the first time. Then the next one is made, and can be
     /// sent from cycle `made` on.
     bool primary_sent(unsigned number, Cycle made);
-    /// The pixel of the block that a primary ray under way is for.
-    int pixel(unsigned number) const { return own_[number].pixel; }
+    /// The sample that a primary ray under way is for.
+    int sample(unsigned number) const { return own_[number].sample; }
     void primary_postponed(unsigned number, const MachineSettings& machine, std::uint64_t ray, Cycle now);
     void primary_answered(unsigned number) { awaited_ &= std::uint16_t(~(1U << number)); }
-    /// Whether a pixel's intensity is still missing or an own ray stands in the register.
-    bool unfinished() const { return awaited_ || next_ < pixels_ || ray_; }
+    /// Whether a sample's intensity is still missing or an own ray stands in the register.
+    bool unfinished() const { return awaited_ || next_ < end_ || ray_; }
 
     /// The voxel and the source of the next precast ray; each pair comes once in a phase.
     struct Precast {
@@ -59,17 +65,18 @@ class Injector {
     /// A primary ray under way or postponed.
     struct OwnRay {
         Retry retry;
-        int pixel = 0;
+        int sample = 0;
     };
     std::uint32_t all() const { return (1U << count_) - 1; }
     /// Not while one is postponed: more rays would only be refused too, and each costs its tests again.
-    bool begins_another() const { return next_ < pixels_ && awaited_ != all() && !to_send_; }
+    bool begins_another() const { return next_ < stop_ && awaited_ != all() && !to_send_; }
 
     RayPacket* ray_ = nullptr;
     std::unique_ptr<OwnRay[]> own_;
-    Cycle made_ = 0;             ///< first cycle in which the next pixel's ray can be sent
-    std::uint32_t next_ = 0;     ///< pixel to begin with next; precast: voxel · sources + source
-    std::uint32_t pixels_ = 0;   ///< of the block, to be sent in this phase
+    Cycle made_ = 0;             ///< first cycle in which the next sample's ray can be sent
+    std::uint32_t next_ = 0;     ///< sample to begin with next; precast: voxel · sources + source
+    std::uint32_t end_ = 0;      ///< behind the last sample of this phase
+    std::uint32_t stop_ = 0;     ///< behind the last that may be sent as yet
     std::uint16_t to_send_ = 0;  ///< bits of own rays that were postponed
     std::uint16_t awaited_ = 0;  ///< bits of own rays that are not answered
     std::uint8_t turn_ = 0;      ///< of those postponed, the first to be looked at

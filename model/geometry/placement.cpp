@@ -72,6 +72,9 @@ Frame array_frame(const PictureSettings& settings) {
             "--pixels " + text(wide, high) + ": expected a whole multiple of --cells " +
             text(settings.width, settings.height) + " each way; the two multiples may differ");
     }
+    if (std::uint64_t(std::max(wide, 1)) * std::uint64_t(std::max(high, 1)) > most_pixels)
+        throw std::invalid_argument("--pixels " + std::to_string(wide) + "x" + std::to_string(high) +
+                                    ": expected at most " + std::to_string(most_pixels) + " pixels");
     Frame frame;
     frame.width = settings.width;
     frame.height = settings.height;

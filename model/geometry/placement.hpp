@@ -50,13 +50,14 @@ struct Frame {
         const int row = y * block_height + pixel / block_width;
         return std::size_t(row) * std::size_t(picture_width()) + std::size_t(column);
     }
-    /// Centre of a pixel of a block, cell widths from the cell's corner.
-    dvec2 centre_in_block(int pixel) const {
-        return {(pixel % block_width + 0.5) / block_width, (pixel / block_width + 0.5) / block_height};
+    /// A place in a pixel of a block, from its corner in pixels, as cell widths from the cell's corner.
+    dvec2 place_in_block(int pixel, const dvec2& in_pixel = {0.5, 0.5}) const {
+        return {(pixel % block_width + in_pixel.x) / block_width,
+                (pixel / block_width + in_pixel.y) / block_height};
     }
-    /// Centre of the picture's pixel (column, row), cell coordinates.
-    dvec2 pixel_centre(int column, int row) const {
-        return {(column + 0.5) / block_width, (row + 0.5) / block_height};
+    /// A place in the picture's pixel (column, row), its centre unless said, in cell coordinates.
+    dvec2 place_in_pixel(int column, int row, const dvec2& in_pixel = {0.5, 0.5}) const {
+        return {(column + in_pixel.x) / block_width, (row + in_pixel.y) / block_height};
     }
 
     /// Origin on the screen and unit direction of the primary ray through (x, y), cell coordinates.

@@ -50,7 +50,7 @@ struct MessageBits {
 };
 /// Primary rays of a cell that may be under way at once.
 inline int own_rays_of(const PictureSettings& picture, const MachineSettings& machine) {
-    return std::min(machine.own_rays, picture.block());
+    return std::min(machine.own_rays, picture.own_samples());
 }
 /// Bits of the slot, the own ray or the voxel that an answer is for.
 int slot_address_bits(const PictureSettings& picture, const MachineSettings& machine);

@@ -4,6 +4,7 @@
 
 #include "model/numbers/bits.hpp"
 #include "model/numbers/field_widths.hpp"
+#include "model/tracing/pixel_sum.hpp"
 
 namespace raycell {
 namespace {
@@ -50,11 +51,22 @@ int start_bits(const MachineSettings& machine) {
 int own_ray_bits(const PictureSettings& picture, const MachineSettings& machine,
                  const MessageBits& messages) {
     const int each = 2 + retry_bits(machine);  // to be sent, awaited
-    if (picture.block() == 1) return each;
+    const int samples = picture.own_samples();
+    if (samples == 1) return each;
     const int rays = own_rays_of(picture, machine);
-    const int pixel = bits_for(picture.block());
-    const int next = bits_for(picture.block() + 1);
-    return rays * (each + pixel) + messages.ray + next + bits_for(rays);
+    const int next = bits_for(samples + 1);
+    const int stop = may_stop_early(picture) ? next : 0;
+    return rays * (each + bits_for(samples)) + messages.ray + next + stop + bits_for(rays);
+}
+
+/// Bits of the intensities of a cell's pixels: the sums of their samples, and how many there are so far. Of
+/// the one pixel whose first samples decide, the least and the greatest of each component.
+std::int64_t pixel_bits(const PictureSettings& picture, const Formats& formats) {
+    if (picture.own_samples() == 1) return 0;
+    const int more = picture.samples > 1 ? bits_for(picture.samples) : 0;
+    const int count = picture.samples > 1 ? bits_for(picture.samples + 1) : 0;
+    const int limits = may_stop_early(picture) ? 2 * 3 * formats.word_bits : 0;
+    return (3 * (formats.word_bits + more) + count) * std::int64_t(picture.block()) + limits;
 }
 
 /// Home, slot and child: where a ray's answer goes.
@@ -151,7 +163,7 @@ RegisterBits register_bits(const PictureSettings& picture, const MachineSettings
     bits.own_ray = sent_ray_bits(picture, messages, sources.sources() > 0, false) +
                    own_ray_bits(picture, machine, messages) + start_bits(machine) +
                    (precast ? field::voxel_index + bits_for(std::int64_t(sources.lights)) : 0);
-    if (picture.block() > 1) bits.pixels = 3 * formats.word_bits * std::int64_t(picture.block());
+    bits.pixels = pixel_bits(picture, formats);
     bits.decisions = (ray_inputs + 1) * decision_bits(formats);
     bits.ages += 2 * age;
     bits.credits += 2 * side_count * wire_bits(machine, ray);  // those that come in and those that leave

@@ -23,11 +23,11 @@ SlotBits slot_bits(const PictureSettings& picture, const MachineSettings& machin
 
 /// Registers beside buffers and slots, bits.
 struct RegisterBits {
-    /// The injector's: a ray; whether it is to be sent, awaited; its back-off. With a block of pixels: these
-    /// and the pixel for each own ray; the ray in the making; counters of pixels and turns.
+    /// The injector's: a ray; whether it is to be sent, awaited; its back-off. If the cell sends several:
+    /// these and the sample for each own ray; the ray in the making; counters of samples and turns.
     int own_ray = 0;
-    /// The intensities of a block of pixels, from which the picture is read. That of a cell with one pixel
-    /// is not counted.
+    /// The intensities of a block of pixels, from which the picture is read, and what samples add up. That of
+    /// a cell with one primary ray is not counted.
     std::int64_t pixels = 0;
     int decisions = 0;  ///< of each ray input and the own ray, once it is tested
     int ages = 0;       ///< of each input, the own ray and the shading unit's reply: oldest first

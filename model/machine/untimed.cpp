@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "model/tracing/pixel_sum.hpp"
 #include "model/tracing/traffic.hpp"
 
 namespace raycell {
@@ -79,14 +80,31 @@ Picture UntimedMachine::render(const std::function<void(int)>& progress) {
                 pixel = display_cell(context_, cell({x, y}), x, y, number);
                 continue;
             }
-            record_background(pixel);
-            const Ray ray = primary_ray(context_, x, y, number);
-            count_ray(rays_, ray.kind);
-            pixel.colour = trace(ray, x, y, &pixel).colour;
+            trace_pixel(pixel, x, y, number);
         }
         if (progress) progress(row);
     }
     return picture;
+}
+
+/// Fills a pixel of cell (x, y)'s block with the mean of its samples.
+void UntimedMachine::trace_pixel(Pixel& pixel, int x, int y, int number) {
+    record_background(pixel);
+    const auto sample = [&](int k) {
+        const Ray ray = primary_ray(context_, x, y, number * settings_.samples + k);
+        count_ray(rays_, ray.kind);
+        return trace(ray, x, y, &pixel).colour;
+    };
+    if (settings_.samples == 1) {
+        pixel.colour = sample(0);
+        return;
+    }
+    PixelSum sum;
+    do {
+        sum.add(sample(sum.count()), context_.arithmetic);
+    } while (!is_complete(sum, settings_, context_.arithmetic));
+    pixel.colour = sum.mean(context_.arithmetic);
+    pixel.samples = std::uint32_t(sum.count());
 }
 
 void UntimedMachine::precast() {
@@ -189,7 +207,7 @@ UntimedMachine::Answer UntimedMachine::answer_hit(const Ray& ray, const CellHit&
     CellStore& store = cell(at);
     const Voxel& voxel = store.voxels[hit.voxel];
     const HitSetup setup = set_up_hit(context_, store, ray, hit, at.x, at.y);
-    if (ray.kind == RayKind::primary) record_first_hit(*pixel, setup, voxel.polygon);
+    if (shows_first_hit(ray)) record_first_hit(*pixel, setup, voxel.polygon);
     std::uint64_t lit = 0;
     for (std::size_t s = 0; s < context_.lights.rays.size(); ++s) {
         const std::uint64_t bit = std::uint64_t(1) << s;

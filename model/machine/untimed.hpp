@@ -55,6 +55,7 @@ class UntimedMachine {
         int y;
     };
 
+    void trace_pixel(Pixel& pixel, int x, int y, int number);
     void precast();
     Answer trace(Ray ray, int x, int y, Pixel* pixel);
     Answer leave(const Ray& ray, Face face, const Crossing& crossing, Place at, Pixel* pixel);

@@ -15,6 +15,7 @@ struct Pixel {
     std::uint32_t polygon = no_polygon;  ///< of the first hit
     std::uint32_t cycle = 0;             ///< trace cycle in which the pixel was complete (timed only)
     std::uint32_t postponed = 0;  ///< times that a ray of its tree was destroyed and sent again (timed only)
+    std::uint32_t samples = 1;    ///< primary rays whose mean the colour is
     std::uint32_t hops = 0;       ///< cell-to-cell hops of all rays and answers of the pixel's tree
 };
 

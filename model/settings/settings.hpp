@@ -42,6 +42,11 @@ struct NumberSettings {
     OperatorSettings operators;
 };
 
+/// Where the samples of a pixel lie closest: nowhere, or towards its middle.
+enum class PixelFilter : std::uint8_t { box, tent };
+constexpr int most_samples = 64;                               ///< of a pixel
+constexpr std::uint64_t most_pixels = std::uint64_t(1) << 26;  ///< of a picture
+
 /// Settings that the picture depends on: scene placement, voxels, ray tree. Both engines use all of them.
 struct PictureSettings {
     int width = 128;   ///< cells, 1..4096
@@ -53,6 +58,13 @@ struct PictureSettings {
     int block_width() const { return pixels_wide > 0 ? pixels_wide / width : 1; }
     int block_height() const { return pixels_high > 0 ? pixels_high / height : 1; }
     int block() const { return block_width() * block_height(); }
+    /// Primary rays that a cell has to send at most.
+    int own_samples() const { return block() * samples; }
+    int samples = 1;  ///< primary rays of a pixel, 1..64; their mean is the pixel's intensity
+    PixelFilter filter = PixelFilter::box;
+    /// A pixel whose first four samples differ by no more than this in any component of their intensities
+    /// sends no others; negative: all pixels send all.
+    double sample_until = -1;
     int depth_levels = 1024;  ///< 1..65536
     ViewerMode viewer = ViewerMode::scene;
     RunStage stage = RunStage::trace;

@@ -65,7 +65,7 @@ void for_each_source(const Lights& lights, std::uint64_t which, const See& see) 
 
 std::uint32_t primary_cycles(const Context& context, const CostTable& costs) {
     const OperatorSettings& operators = context.settings.numbers.operators;
-    if (context.scene.frame.block() == 1) return 0;
+    if (context.settings.own_samples() == 1) return 0;
     if (context.scene.frame.viewer_at_infinity) return costs.ray_start;  // all have one direction
     return costs.source_view + costs.root(operators) + costs.ray_start + 2 * costs.reciprocal(operators);
 }

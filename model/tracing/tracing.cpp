@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "model/geometry/sampling.hpp"
+#include "model/tracing/pixel_sum.hpp"
 #include "model/tracing/traffic.hpp"
 
 namespace raycell {
@@ -314,25 +316,28 @@ int waiting_generations(const Context& context) {
 
 namespace {
 
-/// Centre of a pixel of a block on the screen, cell widths from the cell's corner.
-dvec3 centre_on_screen(const Context& context, int pixel) {
+/// Place of a sample of a pixel of a block on the screen, cell widths from the cell's corner.
+dvec3 place_on_screen(const Context& context, int pixel, int sample) {
+    const dvec2 in_pixel = sample_place(sample, context.settings.samples, context.settings.filter);
     const Format& unit = context.arithmetic.formats().unit;
-    return context.arithmetic.hold(unit, dvec3(context.scene.frame.centre_in_block(pixel), 0));
+    return context.arithmetic.hold(unit, dvec3(context.scene.frame.place_in_block(pixel, in_pixel), 0));
 }
 
 }  // namespace
 
-Ray primary_ray(const Context& context, int x, int y, int pixel) {
+Ray primary_ray(const Context& context, int x, int y, int number) {
     const Frame& frame = context.scene.frame;
+    const int pixel = number / context.settings.samples;
+    const int sample = number % context.settings.samples;
     Ray ray;
-    ray.id = ray_id(frame.pixel_index(x, y, pixel), 0);
+    ray.id = ray_id(frame.pixel_index(x, y, pixel), 0, unsigned(sample));
     ray.home_x = std::uint16_t(x);
     ray.home_y = std::uint16_t(y);
     if (context.traffic) {
         context.traffic->start_primary(ray, context, x, y);
         return ray;
     }
-    ray.position = centre_on_screen(context, pixel);
+    ray.position = place_on_screen(context, pixel, sample);
     const Arithmetic& arithmetic = context.arithmetic;
     const dvec3 at = ray.position + dvec3(x, y, 0);
     const dvec3 direction = arithmetic.exact() || frame.viewer_at_infinity
@@ -397,10 +402,14 @@ dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t obj
     return combine_intensity(local, material, reflected, refracted, context.arithmetic);
 }
 
-Pixel display_cell(const Context& context, const CellStore& store, int x, int y, int pixel_of_block) {
+namespace {
+
+/// What a sample of a pixel shows of the loaded scene.
+Pixel display_sample(const Context& context, const CellStore& store, int x, int y, int pixel_of_block,
+                     int sample) {
     Pixel pixel;
     Ray ray;
-    ray.position = centre_on_screen(context, pixel_of_block);
+    ray.position = place_on_screen(context, pixel_of_block, sample);
     ray.fresh = false;
     set_direction(ray, {0, 0, 1}, context.arithmetic);
     const auto hit = nearest_in_cell(store, ray, context.depth, context.settings.hit, context.arithmetic);
@@ -415,6 +424,21 @@ Pixel display_cell(const Context& context, const CellStore& store, int x, int y,
     pixel.colour = context.settings.display == Display::gouraud
                        ? store.intensities[hit->voxel]
                        : shade_hit(context, setup, voxel.object, ~std::uint64_t(0), dvec3(0), dvec3(0));
+    return pixel;
+}
+
+}  // namespace
+
+Pixel display_cell(const Context& context, const CellStore& store, int x, int y, int pixel_of_block) {
+    const PictureSettings& settings = context.settings;
+    Pixel pixel = display_sample(context, store, x, y, pixel_of_block, 0);
+    if (settings.samples == 1) return pixel;
+    PixelSum sum;
+    sum.add(pixel.colour, context.arithmetic);
+    while (!is_complete(sum, settings, context.arithmetic))
+        sum.add(display_sample(context, store, x, y, pixel_of_block, sum.count()).colour, context.arithmetic);
+    pixel.colour = sum.mean(context.arithmetic);
+    pixel.samples = std::uint32_t(sum.count());
     return pixel;
 }
 

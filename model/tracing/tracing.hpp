@@ -111,8 +111,14 @@ bool may_wait(const Context& context, const Ray& ray, std::uint32_t object);
 /// Number of generations that may have to wait: `reserved` keeps one slot for each.
 int waiting_generations(const Context& context);
 
-/// The primary ray of a pixel of cell (x, y)'s block.
-Ray primary_ray(const Context& context, int x, int y, int pixel = 0);
+/// A primary ray of cell (x, y): number pixel · samples + sample, with the pixel's number in the cell's
+/// block.
+Ray primary_ray(const Context& context, int x, int y, int number = 0);
+
+/// Whether a pixel's first hit is that of this ray: the primary ray of its first sample.
+inline bool shows_first_hit(const Ray& ray) {
+    return ray.kind == RayKind::primary && sample_of_id(ray.id) == 0;
+}
 
 /// Children of a ray that hit: the reflected (child 0), the refracted (child 1), a shadow ray (child =
 /// light).
@@ -131,8 +137,8 @@ Ray voxel_shadow_ray(const Context& context, const CellStore& store, std::uint32
 dvec3 shade_hit(const Context& context, const HitSetup& setup, std::uint32_t object, std::uint64_t lit,
                 const dvec3& reflected, const dvec3& refracted);
 
-/// Cycles from a cell's primary ray to that of its next pixel, which the injector makes meanwhile; 0 with a
-/// pixel a cell, whose ray is made while the scene is loaded. A direction takes as long as one to a source.
+/// Cycles from a cell's primary ray to its next, which the injector makes meanwhile; 0 if it has only one,
+/// which is made while the scene is loaded. A direction takes as long as one to a source.
 std::uint32_t primary_cycles(const Context& context, const CostTable& costs);
 
 /// Cycles of the shading unit.

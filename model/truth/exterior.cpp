@@ -19,7 +19,7 @@ double ClassicalExterior::started(const ExteriorRequest& request, const Ray& ray
 
 dvec3 ClassicalExterior::radiance(const ExteriorRequest& request, const Ray& ray, Pixel* pixel) const {
     const double from = started(request, ray);
-    if (ray.kind == RayKind::primary && pixel) {
+    if (shows_first_hit(ray) && pixel) {
         if (const auto hit = truth_.intersect(request.origin, request.direction, ray.leaves)) {
             HitSetup setup;
             setup.point = truth_.point_at(*hit, request.direction);

@@ -86,8 +86,8 @@ class Trials {
         };
         for_each_row(rows, threads_, {}, [&](int row) {
             for (int column = 0; column < columns; ++column) {
-                const dvec2 at = frame_.pixel_centre(spread(column, columns, frame_.picture_width()),
-                                                     spread(row, rows, frame_.picture_height()));
+                const dvec2 at = frame_.place_in_pixel(spread(column, columns, frame_.picture_width()),
+                                                       spread(row, rows, frame_.picture_height()));
                 const Frame::PrimaryRay ray = frame_.primary_ray(at.x, at.y);
                 colours[std::size_t(row) * std::size_t(columns) + std::size_t(column)] =
                     truth.radiance(ray.origin, ray.direction, no_polygon, 0, 1);

@@ -253,10 +253,10 @@ double forecast_trace(const CellScene& scene, const PictureSettings& settings, c
             const double at = 0.5 + alpha * taken;
             return std::min(int((at - std::floor(at)) * size), size - 1);
         };
-        sampler.primary(frame.pixel_centre(place(alpha_x, frame.picture_width()),
-                                           place(alpha_y, frame.picture_height())));
+        sampler.primary(frame.place_in_pixel(place(alpha_x, frame.picture_width()),
+                                             place(alpha_y, frame.picture_height())));
     }
-    return sampler.hops * pixels / taken;
+    return sampler.hops * pixels * settings.samples / taken;
 }
 
 /// Forecasts hops of a ray from every voxel to every source. Samples polygons evenly by their voxels, and

@@ -19,9 +19,7 @@ SampledAccuracy sample_accuracy(const Picture& picture, const Frame& frame, cons
             std::size_t(sample.pixels) == all ? std::size_t(i) : std::size_t(share * double(all));
         const int x = int(at % std::size_t(picture.width));
         const int y = int(at / std::size_t(picture.width));
-        const Frame::PrimaryRay ray =
-            frame.primary_ray(frame.pixel_centre(x, y).x, frame.pixel_centre(x, y).y);
-        const dvec3 exact = truth.radiance(ray.origin, ray.direction, no_polygon, 0, 1);
+        const dvec3 exact = truth.pixel(x, y, int(picture.at(x, y).samples));
         const dvec3 error = glm::clamp(exact, 0.0, 1.0) - glm::clamp(picture.at(x, y).colour, 0.0, 1.0);
         squares += glm::dot(error, error);
     }

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "model/geometry/sampling.hpp"
 #include "model/truth/area_light.hpp"
 #include "model/truth/rows.hpp"
 
@@ -177,6 +178,17 @@ void TruthRenderer::Tracer::primary(const dvec2& at, Pixel& pixel) {
     if (met == &truth) pixel.colour = shade(point, *hit, {0, 1.0});
 }
 
+TruthSettings truth_settings(const PictureSettings& picture, int source_samples) {
+    TruthSettings settings{picture.max_depth, picture.min_weight};
+    settings.source_samples = source_samples;
+    if (picture.samples == 1) return settings;
+    settings.source_samples = source_samples_of_many(source_samples);
+    settings.samples = converged_samples;
+    settings.filter = picture.filter;
+    settings.first_of = picture.samples;
+    return settings;
+}
+
 TruthRenderer::TruthRenderer(const CellScene& scene, const TruthSettings& settings)
     : scene_(scene), settings_(settings), surfaces_(scene, settings.of), index_(surfaces_) {
     if (settings.max_depth < 0) throw std::invalid_argument("max_depth is negative");
@@ -219,20 +231,39 @@ dvec3 TruthRenderer::radiance(const dvec3& origin, const dvec3& direction, std::
 Picture TruthRenderer::render(int threads, const Progress& progress) const {
     const Frame& frame = scene_.frame;
     Picture picture(frame.picture_width(), frame.picture_height());
+    const dvec2 first = sample_place(0, settings_.first_of, settings_.filter);
     for_each_row(picture.height, threads, progress, [&](int y) {
         Tracer tracer(*this, settings_);
-        for (int x = 0; x < picture.width; ++x) tracer.primary(frame.pixel_centre(x, y), picture.at(x, y));
+        for (int x = 0; x < picture.width; ++x) {
+            Pixel& shown = picture.at(x, y);
+            tracer.primary(frame.place_in_pixel(x, y, first), shown);
+            if (settings_.samples == 1) continue;
+            shown.colour = pixel(x, y);
+            shown.samples = std::uint32_t(settings_.samples);
+        }
     });
     return picture;
+}
+
+dvec3 TruthRenderer::pixel(int column, int row, int taken) const {
+    const int count = taken > 0 ? taken : settings_.samples;
+    dvec3 sum(0);
+    for (int sample = 0; sample < count; ++sample) {
+        const dvec2 at = scene_.frame.place_in_pixel(
+            column, row, sample_place(sample, settings_.samples, settings_.filter));
+        const Frame::PrimaryRay ray = scene_.frame.primary_ray(at.x, at.y);
+        sum += radiance(ray.origin, ray.direction, no_polygon, 0, 1);
+    }
+    return sum / double(count);
 }
 
 TruthCounts TruthRenderer::count(int n, int threads, const Progress& progress) const {
     if (n < 2) throw std::invalid_argument("rays are counted on a grid of at least 2 by 2");
     // The field of view ends at the centres of the outermost pixels (nff.md: `angle`).
     const Frame& frame = scene_.frame;
-    const dvec2 first = frame.pixel_centre(0, 0);
+    const dvec2 first = frame.place_in_pixel(0, 0);
     const dvec2 step =
-        (frame.pixel_centre(frame.picture_width() - 1, frame.picture_height() - 1) - first) / (n - 1.0);
+        (frame.place_in_pixel(frame.picture_width() - 1, frame.picture_height() - 1) - first) / (n - 1.0);
     std::vector<TruthCounts> rows(static_cast<std::size_t>(n));
     for_each_row(n, threads, progress, [&](int y) {
         Tracer tracer(*this, {4, 0.0, true, settings_.of});

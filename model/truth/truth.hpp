@@ -30,7 +30,19 @@ struct TruthSettings {
     /// polygons is what a machine of exact arithmetic and this exterior renders.
     const TruthRenderer* beyond = nullptr;
     int source_samples = 256;  ///< shadow rays of a hit to each source that is an area, >= 1
+    /// Primary rays of a pixel, 1..256, where the machine's samples lie; and how they lie closest.
+    int samples = 1;
+    PixelFilter filter = PixelFilter::box;
+    int first_of = 1;  ///< the first hit of a pixel is that of the first of so many samples
 };
+
+/// Rays of a converged pixel, and of each of its hits to an area if `source_samples` are asked for where a
+/// pixel has one ray: every ray has samples of its own.
+constexpr int converged_samples = 256;
+constexpr int source_samples_of_many(int source_samples) { return std::max(1, source_samples / 64); }
+
+/// The converged truth of pictures with these settings.
+TruthSettings truth_settings(const PictureSettings& picture, int source_samples);
 
 struct TruthHit {
     double t = 0;                        ///< distance from the ray's origin, cell widths
@@ -89,9 +101,12 @@ class TruthRenderer {
     /// What it renders.
     TruthOf of() const { return settings_.of; }
 
-    /// One primary ray through every pixel's centre. cycle and hops stay 0. The picture is the same, bit for
+    /// The settings' samples of every pixel. cycle and hops stay 0. The picture is the same, bit for
     /// bit, for any number of threads (0: as many as the processor has).
     Picture render(int threads = 0, const Progress& progress = {}) const;
+
+    /// The mean of the first `taken` of a pixel's samples, 0: of all.
+    dvec3 pixel(int column, int row, int taken = 0) const;
 
     /// Counts the rays of an n × n picture by the rules of the Standard Procedural Databases: rays from edge
     /// to edge of the field of view (n = 513 for a resolution of 512: the pixels' corners), trees of depth 5

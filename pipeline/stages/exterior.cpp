@@ -103,7 +103,7 @@ void Exterior::begin(std::uint32_t number, std::uint32_t port, int index, Cycle 
         processor.answer = answer_to(ray, blocked ? Answer::Kind::blocked : Answer::Kind::lit);
         processor.silent = ray.kind == RayKind::precast && !blocked;
     } else {
-        Pixel* pixel = ray.kind == RayKind::primary ? &env.picture.pixels[pixel_of(ray.id)] : nullptr;
+        Pixel* pixel = shows_first_hit(ray) ? &env.picture.pixels[pixel_of(ray.id)] : nullptr;
         processor.answer = answer_to(ray, Answer::Kind::intensity);
         processor.answer.colour = exterior_answer(env.context, tracer_.radiance(request, ray, pixel));
     }

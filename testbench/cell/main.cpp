@@ -74,9 +74,9 @@ Record record_of_file(const std::string& path) {
     const RenderOptions options = recorded_options(record.file);
     record.setup.picture = options.picture;
     record.setup.machine = options.machine;
-    if (options.picture.block() != 1)
-        throw UsageError(path + ": pixels are " + std::to_string(options.picture.block()) +
-                         " a cell; expected a record of cells with a pixel each");
+    if (options.picture.own_samples() != 1)
+        throw UsageError(path + ": a cell has " + std::to_string(options.picture.own_samples()) +
+                         " primary rays; expected a record of cells with one each");
     read_setup(record.file, record.setup);
     return record;
 }

@@ -48,7 +48,7 @@ double needed_bytes(const RenderOptions& options) {
     constexpr double untimed_cell = 200;
     const PictureSettings& p = options.picture;
     const double cells = double(p.width) * p.height;
-    const double picture = cells * p.block() * sizeof(Pixel);
+    const double picture = cells * p.block() * double(sizeof(Pixel) + (p.samples > 1 ? sizeof(PixelSum) : 0));
     if (options.engine == Engine::untimed) return cells * untimed_cell + picture;
     const LaunchedRanks ranks = launched_ranks();
     const double pictures = ranks.count == 1 ? 2 : ranks.on_this_machine + 3;

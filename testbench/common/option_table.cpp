@@ -172,7 +172,8 @@ void OptionTable::rays(const std::string& name, std::vector<std::uint64_t>& targ
     const auto check = [](const std::string& word) -> std::string {
         std::uint64_t id = 0;
         if (parse_ray(word, id)) return "";
-        return "expected PIXEL/BRANCH, two numbers from 0 to 4294967295, not '" + printable(word) + "'";
+        return "expected PIXEL/BRANCH, or PIXEL.SAMPLE/BRANCH, as reports name a ray, not '" +
+               printable(word) + "'";
     };
     const auto set = [&target](const std::vector<std::string>& words) {
         target.clear();

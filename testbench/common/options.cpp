@@ -41,6 +41,14 @@ void add_scene_options(OptionTable& table, RenderOptions& options) {
     table.group("Rays");
     table.number("max-depth", p.max_depth, 0, 62, "generations of rays after the primary one");
     table.number("min-weight", p.min_weight, 0.0, 1.0, "share of a pixel below which a ray is not sent");
+    table.group("Samples of a pixel");
+    table.number("samples", p.samples, 1, most_samples,
+                 "primary rays of a pixel, whose mean is its intensity; the truth then has 256");
+    table.choice("filter", p.filter, {{"box", PixelFilter::box}, {"tent", PixelFilter::tent}},
+                 "where they lie: evenly, or closer to the pixel's middle");
+    table.number("sample-until", p.sample_until, -1.0, 8.0,
+                 "a pixel whose first four samples differ by no more in any component of their intensities "
+                 "sends no others; negative: all send all");
     table.group("Results");
     table.flag("quiet", options.quiet, "no progress, no summary");
 }
@@ -87,7 +95,7 @@ void add_communication_options(OptionTable& table, MachineSettings& m) {
     table.choice("recovery", m.recovery, {{"postpone", Recovery::postpone}, {"none", Recovery::none}},
                  "a ray that finds no slot: destroyed and sent again, or left waiting");
     table.number("own-rays", m.own_rays, 1, most_own_rays,
-                 "primary rays of a cell that may be under way at once; no more than it has pixels are");
+                 "primary rays of a cell that may be under way at once; no more than it has samples are");
     table.choice("slots", m.slots,
                  {{"reserved", Slots::reserved}, {"free", Slots::free}, {"nested", Slots::nested}},
                  "slots kept by generation, free for all, or kept for deeper generations alone");

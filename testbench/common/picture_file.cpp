@@ -46,7 +46,7 @@ class ExrStream : public Imf::OStream {
 struct ExrRow {
     struct Sample {
         float r, g, b, z, nx, ny, nz;
-        std::uint32_t polygon, cycle, hops, postponed;
+        std::uint32_t polygon, cycle, hops, postponed, samples;
     };
     std::vector<Sample> samples;
 
@@ -71,13 +71,15 @@ constexpr Channel channels[] = {
     {"cycle", Imf::UINT, offsetof(ExrRow::Sample, cycle)},
     {"hops", Imf::UINT, offsetof(ExrRow::Sample, hops)},
     {"postponed", Imf::UINT, offsetof(ExrRow::Sample, postponed)},
+    {"samples", Imf::UINT, offsetof(ExrRow::Sample, samples)},
 };
+constexpr int samples_channel = int(std::size(channels)) - 1;  ///< only where a pixel has several
 constexpr int colour_channels = 3;  ///< the first of the list, which every picture must have
 
 ExrRow::Sample to_sample(const Pixel& p) {
     return {float(p.colour.r), float(p.colour.g), float(p.colour.b), float(p.depth), float(p.normal.x),
             float(p.normal.y), float(p.normal.z), p.polygon,         p.cycle,        p.hops,
-            p.postponed};
+            p.postponed,       p.samples};
 }
 
 Pixel to_pixel(const ExrRow::Sample& s) {
@@ -89,6 +91,7 @@ Pixel to_pixel(const ExrRow::Sample& s) {
     pixel.cycle = s.cycle;
     pixel.hops = s.hops;
     pixel.postponed = s.postponed;
+    pixel.samples = s.samples;
     return pixel;
 }
 
@@ -113,8 +116,11 @@ void check_size(const char* what, const std::string& path, long long width, long
 void write_exr_rows(const Picture& picture, Imf::OStream& stream) {
     Imf::Header header(picture.width, picture.height);
     header.compression() = Imf::ZIP_COMPRESSION;
+    const bool samples = std::any_of(picture.pixels.begin(), picture.pixels.end(),
+                                     [](const Pixel& pixel) { return pixel.samples > 1; });
     for (const Channel& channel : channels)
-        header.channels().insert(channel.name, Imf::Channel(channel.type));
+        if (&channel != &channels[samples_channel] || samples)
+            header.channels().insert(channel.name, Imf::Channel(channel.type));
     Imf::OutputFile file(stream, header);
     ExrRow row(picture.width);
     file.setFrameBuffer(buffer_of(row, 0, header.channels()));
@@ -130,7 +136,7 @@ void check_channels(const Imf::ChannelList& present, const std::string& path,
         const Imf::Channel* channel = present.findChannel(channels[i].name);
         if (!channel && i < colour_channels)
             fail("read", path, std::string("it has no channel ") + channels[i].name);
-        if (!channel && absent) absent->push_back(channels[i].name);
+        if (!channel && absent && i != samples_channel) absent->push_back(channels[i].name);
         if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
             fail("read", path, std::string("its channel ") + channels[i].name + " is subsampled");
     }

@@ -41,13 +41,17 @@ std::string outcome(Visit::Event event, RayKind kind) {
 
 bool parse_ray(const std::string& word, std::uint64_t& id) {
     const auto slash = word.find('/');
+    const auto dot = std::min(word.find('.'), slash);
     std::uint32_t pixel = 0;
+    std::uint32_t sample = 0;
     std::uint32_t part = 0;
-    if (slash == std::string::npos || !parse_number(word.substr(0, slash), pixel) ||
-        !parse_number(word.substr(slash + 1), part)) {
+    if (slash == std::string::npos || !parse_number(word.substr(0, dot), pixel) ||
+        !parse_number(word.substr(slash + 1), part) ||
+        (dot < slash && !parse_number(word.substr(dot + 1, slash - dot - 1), sample))) {
         return false;
     }
-    id = ray_id(pixel, part);
+    if (pixel >= most_pixels || sample >= unsigned(most_samples)) return false;
+    id = ray_id(pixel, part, sample);
     return true;
 }
 

@@ -66,7 +66,7 @@ struct RenderOptions;
 /// watched.
 std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& out);
 
-/// Reads a ray's id from PIXEL/BRANCH, the form of ray_name(). False if the word has another form.
+/// Reads a ray's id in the form of ray_name(). False if the word has another form.
 bool parse_ray(const std::string& word, std::uint64_t& id);
 
 }  // namespace raycell

@@ -28,10 +28,10 @@ class OwnCell : public CellSocket {
         dont_initialize();
     }
     void begin_phase() override {
-        injector_.begin_phase(0, env_.phase == Phase::trace ? env_.context.scene.frame.block() : 0,
-                              start_of_primaries(env_, x_, y_));
+        begin_tracing(injector_, env_, 0, env_.phase == Phase::trace ? env_.settings.block() : 0,
+                      start_of_primaries(env_, x_, y_));
     }
-    void begin_tree(int pixel) override { injector_.begin_phase(pixel, pixel + 1); }
+    void begin_tree(int pixel) override { begin_tracing(injector_, env_, pixel, pixel + 1, 0); }
 
   private:
     struct Place {

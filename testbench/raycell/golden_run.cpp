@@ -23,9 +23,11 @@ void check_golden(const RenderOptions& options) {
     if (options.engine == Engine::untimed) {
         throw UsageError("--golden: the untimed engine sends no messages; expected --engine timed");
     }
-    if (options.picture.block() > 1) {
+    if (options.picture.own_samples() > 1) {
         throw UsageError(
-            "--golden: records are of cells with a pixel each; expected --pixels to be the --cells");
+            "--golden: records are of cells with a primary ray each; expected --pixels to be the --cells, "
+            "and "
+            "--samples 1");
     }
     check_inside("--golden", options.golden, options.picture);
     int cells = 0;

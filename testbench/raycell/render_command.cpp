@@ -193,8 +193,7 @@ const std::vector<std::string> truth_suffixes = {".truth.exr", ".truth.png", ".d
 Json render_truth(const RenderOptions& options, const CellScene& scene, const Picture& picture,
                   OutputSet& outputs) {
     const CellScene clipped = options.clip_truth ? clip_scene(scene) : scene;
-    TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
-    tree.source_samples = options.truth_samples;
+    TruthSettings tree = truth_settings(options.picture, options.truth_samples);
     const bool progress = shows_progress(options);
     const TruthRenderer::Progress tell = [&](int done, int all) {
         stop_if_interrupted();
@@ -229,9 +228,11 @@ void add_sample(const RenderOptions& options, const RunResult& result, const Cel
     if (!truth || !finished || options.picture.stage == RunStage::load) return;
     constexpr int pixels = 512;
     const bool exterior = options.picture.exterior == ExteriorMode::host;
-    const TruthRenderer polygons(
-        scene, {options.picture.max_depth, options.picture.min_weight, false, TruthOf::polygons,
-                exterior ? truth : nullptr, options.truth_samples});
+    TruthSettings tree{options.picture.max_depth, options.picture.min_weight, false,
+                       TruthOf::polygons,         exterior ? truth : nullptr, options.truth_samples};
+    tree.samples = options.picture.samples;  // the machine's own places: only words may make a difference
+    tree.filter = options.picture.filter;
+    const TruthRenderer polygons(scene, tree);
     const SampledAccuracy sample = sample_accuracy(result.picture, scene.frame, polygons, pixels);
     losses["sample"] = {{"pixels", sample.pixels}, {"psnr_db", sample.psnr_db}};
     constexpr double good = 45;  // dB; the default machine gives 60 to 90 on scenes that fit its words

@@ -250,8 +250,7 @@ int run(const SizeOptions& options, const OptionTable& table, const CLI::App& ap
         const FrameGoal goal{options.goal, std::uint64_t(options.frame_cycles)};
         return size_frames(options, goal, !scene.curved.empty(), std::max(1, generations), outputs);
     }
-    TruthSettings tree{options.picture.max_depth, options.picture.min_weight};
-    tree.source_samples = options.truth_samples;
+    TruthSettings tree = truth_settings(options.picture, options.truth_samples);
     const bool exterior = options.picture.exterior == ExteriorMode::host;
     const CellScene clipped = exterior ? CellScene() : clip_scene(scene);
     const CellScene& seen = exterior ? scene : clipped;

@@ -46,8 +46,9 @@ int run(const TruthOptions& options, const OptionTable& table) {
     }
     CellScene scene = read_and_place(options, outputs);
     if (options.clip) scene = clip_scene(scene);
-    const TruthRenderer truth(scene, {options.picture.max_depth, options.picture.min_weight, false,
-                                      options.of, nullptr, options.truth_samples});
+    TruthSettings settings = truth_settings(options.picture, options.truth_samples);
+    settings.of = options.of;
+    const TruthRenderer truth(scene, settings);
     if (options.count > 0) return print_counts(options, truth);
     const auto start = std::chrono::steady_clock::now();
     const Picture picture = truth.render(0, progress_for(options));

@@ -55,7 +55,7 @@ TEST(Blocks, LeaveTheCubeThePolygonsAndThePrimaryRaysWhereTheyAre) {
             ASSERT_EQ(a.polygons[i].vertices[0] * double(scale), b.polygons[i].vertices[0]);
         for (int row = 0; row < plain.height; ++row) {
             for (int column = 0; column < plain.width; ++column) {
-                const dvec2 at = blocks.pixel_centre(column, row);
+                const dvec2 at = blocks.place_in_pixel(column, row);
                 EXPECT_EQ(blocks.primary_ray(at.x, at.y).direction,
                           plain.primary_ray(column + 0.5, row + 0.5).direction);
             }
@@ -89,8 +89,8 @@ TEST(Blocks, HaveEachPixelOfThePictureOnceAndItsPrimaryRayStartsInItsCell) {
                     EXPECT_EQ(ray.home_y, y);
                     EXPECT_GT(ray.position.x, 0);
                     EXPECT_LT(ray.position.x, 1);
-                    const dvec2 centre = frame.pixel_centre(int(index % std::size_t(settings.pixels_wide)),
-                                                            int(index / std::size_t(settings.pixels_wide)));
+                    const dvec2 centre = frame.place_in_pixel(int(index % std::size_t(settings.pixels_wide)),
+                                                              int(index / std::size_t(settings.pixels_wide)));
                     const double last_bit = std::ldexp(1.0, 2 - settings.numbers.word_bits);
                     EXPECT_NEAR(x + ray.position.x, centre.x, last_bit);
                     EXPECT_NEAR(y + ray.position.y, centre.y, last_bit);

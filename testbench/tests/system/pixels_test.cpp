@@ -96,7 +96,8 @@ TEST(Pixels, AreRefusedWithWhatWasAllowed) {
     refused({"--pixels", "40x16"}, "--pixels 40x16: expected a whole multiple of --cells 16x16 each way");
     refused({"--pixels", "8x8"}, "--pixels 8x8: expected a whole multiple of --cells 16x16 each way");
     refused({"--pixels", "many"}, "expected cells or WxH from 1x1 to 4096x4096, not 'many'");
-    refused({"--pixels", "32x32", "--golden", "1,1"}, "--golden: records are of cells with a pixel each");
+    refused({"--pixels", "32x32", "--golden", "1,1"},
+            "--golden: records are of cells with a primary ray each");
     refused({"--pixels", "32x32", "--watch-pixel", "32,0"}, "there is no pixel (32, 0); expected X below 32");
     refused({"--own-rays", "17"}, "17");
 }
