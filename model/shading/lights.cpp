@@ -34,7 +34,7 @@ SamplePlace step_of(int samples) {
 }
 
 Lights::Lights(std::vector<Source> held, int samples_of_each, const Arithmetic& arithmetic)
-    : sources(std::move(held)), samples(samples_of_each) {
+    : sources(std::move(held)), samples(areas() ? samples_of_each : 1) {
     if (const std::size_t count = SourceCounts(sources, samples).lights; count > max_sources) {
         const auto areas = std::size_t(
             std::count_if(sources.begin(), sources.end(), [](const Source& s) { return is_area(s.kind); }));

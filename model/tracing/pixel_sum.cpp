@@ -33,7 +33,7 @@ bool PixelSum::agrees(double within, const Arithmetic& arithmetic) const {
 
 dvec3 PixelSum::mean(const Arithmetic& arithmetic) const {
     const double step = last_place(arithmetic);
-    const dvec3 sum(double(sum_[0]), double(sum_[1]), double(sum_[2]));
+    const dvec3 sum{double(sum_[0]), double(sum_[1]), double(sum_[2])};
     return arithmetic.hold(arithmetic.formats().intensity, sum * step / double(count_));
 }
 

@@ -114,7 +114,8 @@ Source hold(const Source& source, const Arithmetic& arithmetic) {
     if (arithmetic.exact()) return source;
     const Formats& f = arithmetic.formats();
     Source held = source;
-    held.position = arithmetic.hold_place(source.position);
+    held.position =
+        source.kind == SourceKind::directional ? dvec3(0) : arithmetic.hold_place(source.position);
     if (is_area(source.kind)) hold_area(held, source, arithmetic);
     held.intensity = arithmetic.hold(f.intensity, source.intensity);
     held.axis = arithmetic.hold(f.unit, source.axis);

@@ -12,6 +12,7 @@ STUDIES = {
     "feed": "studies.feed",
     "trace": "studies.trace",
     "whole_frames": "studies.whole_frames",
+    "pixels": "studies.pixels",
     "ladder": "studies.ladder",
     "figures": "studies.figures",
     "stability": "studies.stability",

@@ -22,6 +22,7 @@ enum Place : std::uint8_t {
     in_processor = 68,  ///< of the exterior, with its answer
     answer = 96,        ///< + index into Ray::back
     notice = 160,       ///< "postponed", + index into Ray::back
+    again = 254,        ///< a primary ray that was postponed, where own rays are limited
     done = 255
 };
 constexpr std::size_t longest_way = 60;
@@ -68,7 +69,7 @@ class Moves {
             const std::uint8_t at = state[i];
             if (at >= on_way && at < to_set_up) buffers_[ray(i).way[std::size_t(at - on_way)]] = 1;
             if (at >= answer && at < notice) buffers_[ray(i).back[std::size_t(at - answer)]] = 1;
-            if (at >= notice && at < done) buffers_[ray(i).back[std::size_t(at - notice)]] = 1;
+            if (at >= notice && at < again) buffers_[ray(i).back[std::size_t(at - notice)]] = 1;
         }
     }
     void to(std::size_t i, std::uint8_t place) {
@@ -105,16 +106,20 @@ class Moves {
 
     void move(std::size_t i);
     bool may_be_sent(std::size_t i) const;
+    bool may_begin(std::size_t i) const;
+    std::uint8_t at_home(std::size_t i, Place kind) const {
+        if (kind == answer) return done;
+        return rules_.own_rays > 0 && ray(i).parents.empty() ? again : unsent;
+    }
     void move_at_end(std::size_t i);
     /// Sends an answer or a notice, which may be home at once.
     void set_out(std::size_t i, Place kind) {
-        const std::uint8_t home = kind == answer ? done : unsent;
-        if (ray(i).back.empty()) return to(i, home);
+        if (ray(i).back.empty()) return to(i, at_home(i, kind));
         if (!buffers_[ray(i).back[0]]) to(i, kind);
     }
     void pass_on(std::size_t i, Place kind) {
         const std::size_t next = std::size_t(state_[i] - kind) + 1;
-        if (next == ray(i).back.size()) return to(i, kind == answer ? done : unsent);  // always taken at home
+        if (next == ray(i).back.size()) return to(i, at_home(i, kind));  // always taken at home
         if (!buffers_[ray(i).back[next]]) to(i, std::uint8_t(kind + next));
     }
 
@@ -125,8 +130,20 @@ class Moves {
     std::vector<State> next_;
 };
 
+/// Whether a primary ray is the next of its cell and may be under way beside the others.
+bool Moves::may_begin(std::size_t i) const {
+    int under_way = 0;
+    for (std::size_t other = 0; other < script_.rays().size(); ++other) {
+        if (!ray(other).parents.empty() || ray(other).x != ray(i).x || ray(other).y != ray(i).y) continue;
+        if (state_[other] == again || (other < i && state_[other] == unsent)) return false;
+        under_way += state_[other] != unsent && state_[other] != done;
+    }
+    return under_way < rules_.own_rays;
+}
+
 bool Moves::may_be_sent(std::size_t i) const {
     const auto& parents = ray(i).parents;
+    if (rules_.own_rays > 0 && parents.empty() && state_[i] == unsent && !may_begin(i)) return false;
     if (parents.size() > 1) {  // memo: the first slot to wait sends it
         return std::any_of(parents.begin(), parents.end(),
                            [&](int p) { return state_[std::size_t(p)] == waiting; });
@@ -141,7 +158,7 @@ bool Moves::may_be_sent(std::size_t i) const {
 
 void Moves::move(std::size_t i) {
     const std::uint8_t at = state_[i];
-    if (at == unsent) {
+    if (at == unsent || at == again) {
         if (may_be_sent(i)) to(i, in_register);
     } else if (at < to_set_up) {
         const std::size_t passed = at == in_register ? 0 : std::size_t(at - on_way) + 1;
@@ -188,6 +205,7 @@ std::string Moves::describe(std::size_t i, std::uint8_t place) const {
     const Ray& r = ray(i);
     const std::string at = " (" + std::to_string(r.end_x) + ", " + std::to_string(r.end_y) + ")";
     if (place == unsent) return "to be sent";
+    if (place == again) return "to be sent again";
     if (place == in_register)
         return "in a register of (" + std::to_string(r.x) + ", " + std::to_string(r.y) + ")";
     if (place < to_set_up) return "in " + script_.buffer_name(r.way[std::size_t(place - on_way)]);

@@ -15,6 +15,9 @@ struct Rules {
     Recovery recovery = Recovery::postpone;
     int generations = 1;  ///< that may have to wait
     int processors = 1;   ///< of the exterior
+    /// Primary rays of a cell that may be under way at once, in the script's order; while one is postponed no
+    /// other begins. 0: all of them, in any order.
+    int own_rays = 0;
 };
 
 /// Whether a cell whose slots hold `used[g]` rays of each generation g accepts one more of `generation`. The

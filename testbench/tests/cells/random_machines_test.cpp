@@ -91,6 +91,13 @@ void draw_picture(Drawn& drawn, std::uint64_t seed, property::Random& random) {
         s.pixels_high = s.height * blocks.whole(1, 3);
         drawn.machine.own_rays = blocks.whole(1, 5);
     }
+    property::Random samples(seed + 6000000);
+    if (samples.chance(0.4)) {
+        s.samples = samples.whole(2, 9);
+        s.filter = samples.chance(0.3) ? PixelFilter::tent : PixelFilter::box;
+        if (samples.chance(0.5)) s.sample_until = samples.uniform(0, 0.3);
+        drawn.machine.own_rays = samples.whole(1, 6);
+    }
     if (random.chance(0.25)) {
         const char* const own[] = {"cornell", "facing_mirrors", "still_life"};
         const char* const name = own[random.whole(0, 2)];
@@ -145,7 +152,8 @@ Drawn draw(std::uint64_t seed) {
     const char* const networks[] = {"shared", "split", "quadrant", "half"};
     const char* const slots[] = {"reserved, ", "free, ", "nested, "};
     drawn.text += std::to_string(s.width) + "x" + std::to_string(s.height) + ", " +
-                  std::to_string(s.block()) + " pixels a cell, " + std::to_string(m.own_rays) +
+                  std::to_string(s.block()) + " pixels a cell, " + std::to_string(s.samples) + " samples" +
+                  (s.sample_until < 0 ? "" : " at most") + ", " + std::to_string(m.own_rays) +
                   " own rays, M " + std::to_string(m.ray_store) + " (bound " + std::to_string(drawn.least) +
                   "), buffers " + std::to_string(m.buffer_depth) + ", " + networks[int(m.networks)] + ", " +
                   slots[int(m.slots)] + (m.recovery == Recovery::none ? "none" : "postpone") + ", links " +

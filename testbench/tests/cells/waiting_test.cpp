@@ -213,7 +213,7 @@ TEST(RayWatchOrder, EventsOfACycleComeByCellWhateverCellRanFirst) {
     const auto told = [&](const std::vector<int>& order) {
         std::ostringstream text;
         RayWatch watch(text, machine.networks, 4, 4);
-        for (int i = 0; i < 16; ++i) watch.watch_pixel(i % 4, i / 4);
+        for (int i = 0; i < 16; ++i) watch.watch_pixel(std::uint64_t(i));
         CellObserverList list;
         list.add(watch);
         for (const int i : order) {

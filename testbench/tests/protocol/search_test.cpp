@@ -145,6 +145,52 @@ TEST(EveryOrder, BetweenFacingMirrorsWithSeveralTreesEnds) {
     EXPECT_TRUE(look("mirrors, four trees", script, rules, Networks::half).always_ends());
 }
 
+TEST(EveryOrder, OfBlocksOfPixelsEndsFromTheSameSlotsOnWhateverTheOwnRays) {
+    struct Case {
+        int trees, generations;
+    };
+    for (const Networks n : acyclic) {
+        for (const Case& c : {Case{2, 1}, Case{3, 1}, Case{2, 2}, Case{3, 2}}) {
+            const Script script = facing_mirrors(n, 2, c.trees, c.generations);
+            for (int own_rays = 1; own_rays <= c.trees; ++own_rays) {
+                for (const Slots slots : {Slots::reserved, Slots::nested}) {
+                    Rules rules = rules_for(script, c.generations, slots, Recovery::postpone);
+                    rules.own_rays = own_rays;
+                    SCOPED_TRACE(std::to_string(own_rays) + " of " + std::to_string(c.trees));
+                    EXPECT_TRUE(look("mirrors, own rays", script, rules, n).always_ends());
+                }
+            }
+        }
+    }
+    // They don't make a machine end that would not with one pixel a cell.
+    const Script script = facing_mirrors(Networks::half, 2, 2, 2);
+    Rules rules = rules_for(script, 1, Slots::reserved, Recovery::postpone);
+    rules.own_rays = 1;
+    EXPECT_GT(look("mirrors, one slot", script, rules, Networks::half).traps, 0u);
+}
+
+TEST(EveryOrder, OfHitsWithManyShadowRaysEnds) {
+    for (const Networks n : acyclic) {
+        for (const int shadows : {2, 3}) {
+            Script script(2, 1, n);
+            for (const bool east : {true, false}) {
+                const std::string name = east ? "w" : "e";
+                const int x = east ? 0 : 1;
+                const double way = east ? 1 : -1;
+                const int first = script.add(name, x, 0, 0, 0, 0, End::hit);
+                const int second = script.add_child(first, name + "/1", way, 0, 1, End::hit);
+                for (int s = 0; s < shadows; ++s) {
+                    script.add_child(first, name + "/s" + std::to_string(s), way, 0, 1, End::answer);
+                    if (s < 4 - shadows)
+                        script.add_child(second, name + "/1s" + std::to_string(s), -way, 0, 1, End::answer);
+                }
+            }
+            EXPECT_TRUE(look("shadows", script, rules_for(script, 2, Slots::reserved, Recovery::postpone), n)
+                            .always_ends());
+        }
+    }
+}
+
 TEST(EveryOrder, BetweenFacingMirrorsFartherApartAndWithDeeperBuffersEnds) {
     for (const Networks n : acyclic) {
         for (const int depth : {1, 2}) {
@@ -251,16 +297,17 @@ TEST(EveryOrder, OfPrecastRaysEndsWithoutAnySlot) {
     }
 }
 
-/// A few random trees in a tiny array; a ray is drawn again when it would leave the array.
-Script random_script(property::Random& random, Networks networks) {
+/// A few random trees in a tiny array, all of one cell or of any; a ray is drawn again when it would leave
+/// the array.
+Script random_script(property::Random& random, Networks networks, bool of_one_cell = false) {
     const int width = random.whole(1, 3);
     const int height = width == 1 ? random.whole(2, 3) : random.whole(1, 2);
     Script script(width, height, networks);
     const int generations = random.whole(1, 3);
     const auto grow = [&](int parent, bool last) {
         const Ray* from = parent < 0 ? nullptr : &script.rays()[std::size_t(parent)];
-        const int x = from ? from->end_x : random.whole(0, width - 1);
-        const int y = from ? from->end_y : random.whole(0, height - 1);
+        const int x = from ? from->end_x : of_one_cell ? 0 : random.whole(0, width - 1);
+        const int y = from ? from->end_y : of_one_cell ? 0 : random.whole(0, height - 1);
         const std::string name = std::to_string(script.rays().size());
         const End ends[] = {End::answer, End::direct, End::exterior};
         const End end = last ? ends[random.whole(0, 2)] : End::hit;
@@ -305,6 +352,26 @@ TEST(EveryOrder, OfRandomTreesEndsWithReservedOrNestedSlotsAndRecovery) {
         EXPECT_EQ(result.traps, 0u);
     }
     std::cout << looked_at << " scripts, " << states << " states\n";
+    EXPECT_TRUE(looked_at > 75 || looked_at == 1) << "most are to be small enough";
+}
+
+TEST(EveryOrder, OfRandomTreesOfTheBlockOfOneCellEnds) {
+    int looked_at = 0;
+    for (const std::uint64_t seed : property::seeds(2001, 150)) {
+        SCOPED_TRACE(property::rerun(seed));
+        property::Random random(seed);
+        const Script script = random_script(random, acyclic[random.whole(0, 1)], true);
+        const Slots slots = random.chance(0.5) ? Slots::reserved : Slots::nested;
+        Rules rules =
+            rules_for(script, script.waiting_generations() + random.whole(0, 1), slots, Recovery::postpone);
+        rules.own_rays = random.whole(1, 3);
+        const Result result = search(script, rules, 60000);
+        if (!result.complete) continue;
+        ++looked_at;
+        EXPECT_EQ(result.deadlocks, 0u);
+        EXPECT_EQ(result.traps, 0u);
+    }
+    std::cout << looked_at << " scripts\n";
     EXPECT_TRUE(looked_at > 75 || looked_at == 1) << "most are to be small enough";
 }
 

@@ -77,6 +77,7 @@ TEST(Usage, WholeNumbersOutOfRangeAreRefused) {
         {"max-depth", {"-1", "63"}},
         {"word-bits", {"7", "33", "-20"}},
         {"source-samples", {"0", "-1", "65"}},
+        {"samples", {"0", "-1", "65"}},
         {"truth-samples", {"0", "-1", "65537"}},
         {"ray-store", {"0", "-1", "1025"}},
         {"buffer", {"0", "-1", "1025"}},
@@ -101,6 +102,7 @@ TEST(Usage, RealNumbersOutOfRangeAreRefused) {
     const std::vector<std::pair<std::string, Words>> options = {
         {"chord-error", {"0", "-0.1", "1001", "1e-4"}},
         {"tessellate-for", {"-1", "100.1"}},
+        {"sample-until", {"-1.1", "8.1"}},
         {"min-weight", {"-0.1", "1.1", "-1e-9"}},
         {"clock-mhz", {"0", "-20", "1e6", "1e-4"}},
         {"normal-offset", {"-1.1", "1.5"}}};

@@ -69,7 +69,7 @@ TEST(Injector, HasNoMoreRaysOfItsBlockUnderWayThanItMayAndSendsEachPixelsRayOnce
         ASSERT_LT(now, 100u);
         while (const auto number = injector.primary_due(now, wakeup)) {
             ASSERT_TRUE(injector.primary_sent(*number, now));
-            pixels.push_back(injector.pixel(*number));
+            pixels.push_back(injector.sample(*number));
             under_way.push_back(*number);
         }
         EXPECT_LE(under_way.size(), 3u);
@@ -77,6 +77,30 @@ TEST(Injector, HasNoMoreRaysOfItsBlockUnderWayThanItMayAndSendsEachPixelsRayOnce
         under_way.erase(under_way.begin());
     }
     EXPECT_EQ(pixels, (std::vector<int>{0, 1, 2, 3, 4}));
+}
+
+TEST(Injector, SendsNothingFromItsStopOnBeforeItIsToldToGoOn) {
+    Injector injector(2);
+    injector.begin_phase(0, 20);
+    injector.go_on(0, 2);
+    Wakeup wakeup;
+    const auto send = [&] {
+        const auto number = injector.primary_due(1, wakeup);
+        if (!number) return -1;
+        injector.primary_sent(*number, 0);
+        const int sample = injector.sample(*number);
+        injector.primary_answered(*number);
+        return sample;
+    };
+    EXPECT_EQ(send(), 0);
+    EXPECT_EQ(send(), 1);
+    EXPECT_EQ(send(), -1);
+    EXPECT_TRUE(injector.unfinished());
+    injector.go_on(18, 26);
+    EXPECT_EQ(send(), 18);
+    EXPECT_EQ(send(), 19);
+    EXPECT_EQ(send(), -1) << "the phase has no more";
+    EXPECT_FALSE(injector.unfinished());
 }
 
 TEST(Injector, MakesTheNextPixelsRayBeforeItSendsIt) {
