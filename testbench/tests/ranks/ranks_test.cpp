@@ -85,9 +85,10 @@ TEST(Ranks, MakeTheSameRunWithTheExterior) {
     expect_same(own_scene("cornell.nff"), {"--cells", "20x26"});
 }
 
-TEST(Ranks, MakeTheSameRunWithBlocksOfPixels) {
+TEST(Ranks, MakeTheSameRunWithBlocksOfPixelsAndSamples) {
     SKIP_WITHOUT_MPI();
     expect_same(own_scene("cornell.nff"), {"--cells", "12x10", "--pixels", "24x30", "--own-rays", "2"});
+    expect_same(own_scene("cornell.nff"), {"--cells", "12x10", "--samples", "5", "--sample-until", "0.05"});
 }
 
 TEST(Ranks, MakeTheSameRunWithRowsCutAnywhere) {
