@@ -159,7 +159,8 @@ Source placed_source(const LightSource& source, const Frame& frame, double share
         placed.edge_u = frame.direction_to_cells(source.edge_u) / frame.cell_width;
         placed.edge_v = frame.direction_to_cells(source.edge_v) / frame.cell_width;
         if (source.kind != SourceKind::sphere)
-            placed.axis = -glm::normalize(glm::cross(placed.edge_u, placed.edge_v));
+            placed.axis =
+                -glm::normalize(glm::cross(glm::normalize(placed.edge_u), glm::normalize(placed.edge_v)));
         placed.position -= source.before * placed.axis;
         return placed;
     }

@@ -15,7 +15,8 @@ double last_place(const Arithmetic& arithmetic) {
 void PixelSum::add(const dvec3& intensity, const Arithmetic& arithmetic) {
     const double step = last_place(arithmetic);
     for (std::size_t i = 0; i < 3; ++i) {
-        const std::int64_t word = std::llround(intensity[int(i)] / step);
+        constexpr double most = 1 << 22;
+        const std::int64_t word = std::llround(std::clamp(intensity[int(i)], -most, most) / step);
         sum_[i] += word;
         least_[i] = count_ > 0 ? std::min(least_[i], word) : word;
         most_[i] = count_ > 0 ? std::max(most_[i], word) : word;

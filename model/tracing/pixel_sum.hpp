@@ -18,7 +18,8 @@ inline bool may_stop_early(const PictureSettings& settings) {
 }
 
 /// The sum of a pixel's intensities: an integer of the intensity's last place, 6 bits longer than a word, so
-/// that nothing is rounded and no order of the answers matters. In exact arithmetic its last place is 2^-40.
+/// that nothing is rounded and no order of the answers matters. In exact arithmetic its last place is 2^-40, and
+/// intensities count up to 2^22.
 class PixelSum {
   public:
     void add(const dvec3& intensity, const Arithmetic& arithmetic);
@@ -29,7 +30,7 @@ class PixelSum {
     dvec3 mean(const Arithmetic& arithmetic) const;
 
   private:
-    std::array<std::int64_t, 3> sum_{};
+    std::array<__int128, 3> sum_{};
     std::array<std::int64_t, 3> least_{};
     std::array<std::int64_t, 3> most_{};
     int count_ = 0;

@@ -219,10 +219,18 @@ ExteriorRequest request_at_border(const Context& context, const Ray& ray, const 
 
 }  // namespace
 
+double started_at(const CellScene& scene, const ExteriorRequest& request, const Ray& ray) {
+    if (ray.leaves >= scene.polygons.size()) return 0;
+    const Plane& plane = scene.polygons[ray.leaves].plane;
+    const double slope = glm::dot(plane.n, request.direction);
+    if (slope == 0) return 0;
+    return std::min((plane.c - glm::dot(plane.n, request.origin)) / slope, 0.0);
+}
+
 namespace {
 
-/// The way from a place to a source along a ray that goes there.
-double distance_to(const Source& source, const dvec3& origin, const dvec3& direction) {
+/// The way to a source along a ray that goes there and left its polygon a `since` ago.
+double distance_to(const Source& source, const dvec3& origin, const dvec3& direction, double since) {
     const dvec3 way = source.position - origin;
     switch (source.kind) {
         case SourceKind::directional:
@@ -230,8 +238,10 @@ double distance_to(const Source& source, const dvec3& origin, const dvec3& direc
         case SourceKind::rectangle:
         case SourceKind::triangle:  // where it meets the plane
             return glm::dot(way, source.axis) / glm::dot(direction, source.axis);
-        case SourceKind::sphere:  // the disc lies across the way to the middle
-            return glm::dot(way, direction);
+        case SourceKind::sphere: {  // its disc lies across the way from the hit to the middle
+            const double along = glm::dot(way, direction);
+            return (glm::dot(way, way) + since * along) / (along + since);
+        }
         case SourceKind::point:
         case SourceKind::spot:
             break;
@@ -246,7 +256,8 @@ ExteriorRequest exterior_request(const Context& context, const Ray& ray, const C
     ExteriorRequest request = request_at_border(context, ray, crossing, x, y);
     if (is_shadow(ray.kind) && !context.arithmetic.exact()) {
         const Source& source = context.scene.sources[context.lights.rays[ray.child].source];
-        request.reach = distance_to(source, request.origin, request.direction);
+        request.reach =
+            distance_to(source, request.origin, request.direction, -started_at(context.scene, request, ray));
     }
     return request;
 }

@@ -80,6 +80,9 @@ struct ExteriorRequest {
 /// unit again, and the distance to a source is computed from the source, because the exterior is exact.
 ExteriorRequest exterior_request(const Context& context, const Ray& ray, const Crossing& crossing, int x,
                                  int y);
+/// From where a ray left the cube back to where it had started, on the polygon that it leaves: 0 or negative,
+/// cell widths.
+double started_at(const CellScene& scene, const ExteriorRequest& request, const Ray& ray);
 /// An intensity from the exterior, as a message carries it.
 dvec3 exterior_answer(const Context& context, const dvec3& intensity);
 

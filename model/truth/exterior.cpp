@@ -7,18 +7,8 @@ namespace raycell {
 ClassicalExterior::ClassicalExterior(const CellScene& scene, const TruthRenderer& truth)
     : scene_(scene), truth_(truth) {}
 
-/// Distance from where the ray left the cube to where it had started, on the polygon that it leaves: 0 or
-/// negative.
-double ClassicalExterior::started(const ExteriorRequest& request, const Ray& ray) const {
-    if (ray.leaves >= scene_.polygons.size()) return 0;
-    const Plane& plane = scene_.polygons[ray.leaves].plane;
-    const double slope = glm::dot(plane.n, request.direction);
-    if (slope == 0) return 0;
-    return std::min((plane.c - glm::dot(plane.n, request.origin)) / slope, 0.0);
-}
-
 dvec3 ClassicalExterior::radiance(const ExteriorRequest& request, const Ray& ray, Pixel* pixel) const {
-    const double from = started(request, ray);
+    const double from = started_at(scene_, request, ray);
     if (shows_first_hit(ray) && pixel) {
         if (const auto hit = truth_.intersect(request.origin, request.direction, ray.leaves)) {
             HitSetup setup;
@@ -32,7 +22,7 @@ dvec3 ClassicalExterior::radiance(const ExteriorRequest& request, const Ray& ray
 
 bool ClassicalExterior::blocked(const ExteriorRequest& request, const Ray& ray) const {
     return truth_.occluded(request.origin, request.direction, ray.leaves, request.reach,
-                           started(request, ray));
+                           started_at(scene_, request, ray));
 }
 
 }  // namespace raycell

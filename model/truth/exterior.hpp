@@ -16,8 +16,6 @@ class ClassicalExterior : public ExteriorTracer {
     bool blocked(const ExteriorRequest& request, const Ray& ray) const override;
 
   private:
-    double started(const ExteriorRequest& request, const Ray& ray) const;
-
     const CellScene& scene_;
     const TruthRenderer& truth_;
 };

@@ -1,5 +1,6 @@
 #include "testbench/common/options.hpp"
 
+#include "model/tracing/pixel_sum.hpp"
 #include "scenes/frame_list.hpp"
 
 namespace raycell {
@@ -51,6 +52,20 @@ void add_scene_options(OptionTable& table, RenderOptions& options) {
                  "sends no others; negative: all send all");
     table.group("Results");
     table.flag("quiet", options.quiet, "no progress, no summary");
+}
+
+void add_source_samples(OptionTable& table, PictureSettings& p) {
+    table.group("Rays");
+    table.number("source-samples", p.source_samples, 1, int(max_sources),
+                 "shadow rays from a hit, or a voxel, to each source that is an area");
+}
+
+void check_samples(const PictureSettings& p) {
+    if (p.sample_until >= 0 && p.samples <= first_samples) {
+        throw UsageError("--sample-until: the first " + std::to_string(first_samples) +
+                         " samples of a pixel are sent in any case; expected --samples above that, not " +
+                         std::to_string(p.samples));
+    }
 }
 
 void add_truth_samples(OptionTable& table, RenderOptions& options) {
@@ -177,8 +192,7 @@ void add_machine_options(OptionTable& table, RenderOptions& options) {
     table.table_size("power-table", o.power_table, "the same, of each of its two tables; 0: 32 at 20 bits");
     add_communication_options(table, m);
     table.group("Rays");
-    table.number("source-samples", p.source_samples, 1, int(max_sources),
-                 "shadow rays from a hit, or a voxel, to each source that is an area");
+    add_source_samples(table, p);
     table.number("normal-offset", p.normal_offset, -1.0, 1.0,
                  "start of secondary rays off their polygon, cells; negative: what suits the arithmetic");
     table.group("Rays beyond the cube");

@@ -137,6 +137,9 @@ void add_placement_options(OptionTable& table, RenderOptions& options);
 void add_scene_options(OptionTable& table, RenderOptions& options);
 /// The truth's own samples of sources.
 void add_truth_samples(OptionTable& table, RenderOptions& options);
+void add_source_samples(OptionTable& table, PictureSettings& p);
+/// Throws UsageError if --sample-until can't have an effect.
+void check_samples(const PictureSettings& p);
 /// What a cell makes of a span: depth levels, hit test, normals, shadow bits, capacity, intensities.
 void add_voxel_options(OptionTable& table, PictureSettings& picture);
 /// Arithmetic, its words and their rounding.

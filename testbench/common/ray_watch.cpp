@@ -207,6 +207,10 @@ std::unique_ptr<RayWatch> watch_of(const RenderOptions& options, std::ostream& o
             throw UsageError("--watch-ray: there is no pixel " + std::to_string(pixel_of(id)) +
                              "; expected PIXEL from 0 to " + std::to_string(pixels - 1));
         }
+        if (int(sample_of_id(id)) >= picture.samples) {
+            throw UsageError("--watch-ray: there is no sample " + std::to_string(sample_of_id(id)) +
+                             "; expected SAMPLE from 0 to " + std::to_string(picture.samples - 1));
+        }
         watch->watch_ray(id);
     }
     for (const CellRange& range : options.watch_pixels) {

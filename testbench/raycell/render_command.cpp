@@ -230,14 +230,17 @@ void add_sample(const RenderOptions& options, const RunResult& result, const Cel
     const bool exterior = options.picture.exterior == ExteriorMode::host;
     TruthSettings tree{options.picture.max_depth, options.picture.min_weight, false,
                        TruthOf::polygons,         exterior ? truth : nullptr, options.truth_samples};
-    tree.samples = options.picture.samples;  // the machine's own places: only words may make a difference
+    // The machine's own places: only words may make a difference, and other points of an area.
+    tree.samples = options.picture.samples;
     tree.filter = options.picture.filter;
     const TruthRenderer polygons(scene, tree);
     const SampledAccuracy sample = sample_accuracy(result.picture, scene.frame, polygons, pixels);
     losses["sample"] = {{"pixels", sample.pixels}, {"psnr_db", sample.psnr_db}};
     constexpr double good = 45;  // dB; the default machine gives 60 to 90 on scenes that fit its words
     const PictureSettings& p = options.picture;
-    const bool words_alone = p.numbers.arithmetic == Numbers::fixed && p.hit == HitTest::edge &&
+    const bool areas = std::any_of(scene.sources.begin(), scene.sources.end(),
+                                   [](const Source& source) { return is_area(source.kind); });
+    const bool words_alone = !areas && p.numbers.arithmetic == Numbers::fixed && p.hit == HitTest::edge &&
                              p.normals == Normals::linear && p.shadows == Shadows::per_hit &&
                              p.exterior == ExteriorMode::host && result.verdict == Verdict::completed;
     if (words_alone && sample.psnr_db < good && !options.quiet) {
@@ -349,6 +352,7 @@ int run(const RenderOptions& options, const OptionTable& table, int jobs) {
     check_probes(options);
     check_recording(options);
     check_golden(options);
+    check_samples(options.picture);
     if (!options.frames.empty() && options.frame == 0)
         return run_frames(options, table, suffixes_of(options), jobs);
     check_ranks(options);

@@ -244,6 +244,7 @@ int run(const SizeOptions& options, const OptionTable& table, const CLI::App& ap
     outputs.announce({".csv", ".json", ".toml"});
     if (options.frame_cycles > 0) outputs.announce({".svg"});
     check_memory(options);
+    check_samples(options.picture);
     const CellScene scene = read_and_place(options, outputs);
     if (options.frame_cycles > 0) {
         const int generations = bound_of(Context(scene, options.picture), options.machine).generations;
@@ -299,6 +300,8 @@ Command add_size_command(CLI::App& program) {
     table->choice("exterior", options->picture.exterior,
                   {{"host", ExteriorMode::host}, {"none", ExteriorMode::none}},
                   "rays that leave the cube: traced on by the exterior processors, or lost");
+    add_source_samples(*table, options->picture);
+    add_truth_samples(*table, *options);
     table->number("seed", options->machine.seed, std::uint64_t(0), ~std::uint64_t(0) >> 1,
                   "of the back-off's jitter in the timed run");
     return {app, [options, table, app] { return run(*options, *table, *app); }};

@@ -33,7 +33,7 @@ def read_rays(path, width, most=MOST_RAYS):
         rows = [r for r in csv.DictReader(stream) if r.get("kind") != "precast"]
     if rows and not {"ray", "parent", "kind", "end", "ended", *NUMBERS} <= rows[0].keys():
         raise ValueError("expected the columns ray, parent, kind, ...")
-    pixels = [int(r["ray"].split("/")[0]) for r in rows]
+    pixels = [int(r["ray"].split("/")[0].split(".")[0]) for r in rows]  # pixel/branch or pixel.sample/branch
     limit = None
     if len(rows) > most:
         limit = sorted(pixels)[most]

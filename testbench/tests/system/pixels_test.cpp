@@ -99,7 +99,7 @@ TEST(Pixels, AreRefusedWithWhatWasAllowed) {
     refused({"--pixels", "32x32", "--golden", "1,1"},
             "--golden: records are of cells with a primary ray each");
     refused({"--pixels", "32x32", "--watch-pixel", "32,0"}, "there is no pixel (32, 0); expected X below 32");
-    refused({"--own-rays", "17"}, "17");
+    refused({"--own-rays", "17"}, "from 1 to 16");
 }
 
 }  // namespace

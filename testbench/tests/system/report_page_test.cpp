@@ -47,6 +47,14 @@ TEST(ReportPage, ShowsACompletedRun) {
     EXPECT_FALSE(contains(page, "What is stuck"));
 }
 
+TEST(ReportPage, HasTheRaysOfSeveralSamples) {
+    const Workshop workshop;
+    workshop.report(own_scene("cornell.nff"), {"--cells", "4x4", "--samples", "3", "--rays"});
+    const std::string page = page_of(workshop);
+    expect_self_contained(page);
+    EXPECT_TRUE(contains(page, "id=\"rays\"")) << "the names of samples' rays are read, or page_of() fails";
+}
+
 TEST(ReportPage, ShowsWhatIsStuckInADeadlock) {
     const Workshop workshop;
     const Json report = workshop.report(own_scene("facing_mirrors.nff"),

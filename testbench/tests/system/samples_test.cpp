@@ -77,6 +77,31 @@ TEST(Samples, AreWatchedByTheirNumber) {
     EXPECT_TRUE(contains(finished.out, "9/0"));
 }
 
+TEST(Samples, ThatCanNotBeAreRefusedWithWhatIsAllowed) {
+    const Workshop workshop;
+    const auto refused = [&](const Words& words, const std::string& part) {
+        const Finished finished = workshop.render(scene, joined({"--cells", "4x4"}, words));
+        EXPECT_EQ(finished.exit_code, 1);
+        EXPECT_TRUE(contains(finished.err, part)) << finished.err;
+    };
+    refused({"--sample-until", "0"},
+            "--sample-until: the first 4 samples of a pixel are sent in any case; expected --samples above "
+            "that, not 1");
+    refused({"--samples", "4", "--sample-until", "0.1"}, "expected --samples above that, not 4");
+    refused({"--samples", "3", "--watch-ray", "9.3/0"}, "there is no sample 3; expected SAMPLE from 0 to 2");
+}
+
+TEST(Samples, OfBrightSourcesDoNotOverflowInExactArithmetic) {
+    const Workshop workshop;
+    workshop.write("sun.toml",
+                   "[[source]]\nkind = 'point'\nposition = [0, 1, 3]\ncolour = [1e6, 1e6, 1e6]\n");
+    const Words words = {"--cells", "8x8",       "--arithmetic", "exact",    "--engine",
+                         "untimed", "--sources", "sun.toml",     "--samples"};
+    workshop.report(scene, joined(words, {"64"}), 0, "a");
+    for (const Pixel& pixel : read_exr(workshop.result("a.exr")).pixels)
+        for (int i = 0; i < 3; ++i) ASSERT_GE(pixel.colour[i], 0);
+}
+
 TEST(Samples, OfMoreThanOneAreNotRecordedForACellAlone) {
     const Workshop workshop;
     const Finished finished = workshop.render(scene, {"--cells", "4x4", "--samples", "2", "--golden", "1,1"});

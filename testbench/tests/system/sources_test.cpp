@@ -64,6 +64,50 @@ TEST(Sources, MoreShadowRaysThanAWordHasBitsAreRefused) {
     EXPECT_TRUE(contains(refused.err, "wrong.toml:1: 'radius' is missing")) << refused.err;
 }
 
+// The disc of a sphere lies across the way from the hit to its middle, wherever a ray leaves the cube.
+TEST(Sources, ASphereBehindAWallBeyondTheCubeIsHiddenInWordsAsInExactArithmetic) {
+    const Workshop workshop;
+    workshop.write("ext.nff",
+                   "b 0 0 0\nv\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 20\nhither 0.1\nresolution 16 16\n"
+                   "l 0 0 5\nf 1 1 1 1 0 0 0 1\np 4\n-3 -3 -1\n3 -3 -1\n3 3 -1\n-3 3 -1\n"
+                   "p 4\n4.2 -2 -1\n4.2 2 -1\n4.2 2 3\n4.2 -2 3\n");
+    workshop.write("sphere.toml", "[[source]]\nkind = 'sphere'\ncentre = [5, 0, 0.5]\nradius = 2.5\n");
+    const Words words = {"--cells",   "12x12",       "--engine",         "untimed",
+                         "--sources", "sphere.toml", "--source-samples", "32"};
+    workshop.report("ext.nff", words, 0, "words");
+    workshop.report("ext.nff", joined(words, {"--arithmetic", "exact"}), 0, "exact");
+    const Finished compared = workshop.run({"compare", "results/words.exr", "results/exact.exr", "--json"});
+    EXPECT_GT(Json::parse(compared.out).at("psnr_db").get<double>(), 60);
+}
+
+TEST(Sources, ThatAreAreasHaveTheSamplesThatSizeIsAskedFor) {
+    const Workshop workshop;
+    std::string nine;
+    for (int i = 0; i < 9; ++i)
+        nine += "[[source]]\nkind = 'sphere'\ncentre = [0, 1, " + std::to_string(i) + "]\nradius = 0.1\n";
+    workshop.write("nine.toml", nine);
+    const Words words = {"size",      own_scene("cornell.nff").string(),
+                         "--cells",   "4x4",
+                         "--sources", "nine.toml",
+                         "--psnr",    "10",
+                         "-o",        "results/a"};
+    const Finished many = workshop.run(words);
+    EXPECT_EQ(many.exit_code, 1);
+    EXPECT_TRUE(contains(many.err, "--source-samples 7 or less")) << many.err;
+    const Finished few = workshop.run(joined(words, {"--source-samples", "3"}));
+    EXPECT_EQ(few.exit_code, 0) << few.err;
+    EXPECT_TRUE(contains(read_text(workshop.result("a.toml")), "source-samples = 3"));
+}
+
+TEST(Sources, AreNotTakenForWordsThatAreTooShort) {
+    const Workshop workshop;
+    const Finished one = workshop.run(joined(
+        {"render", own_scene("cornell.nff").string(), "-o", "results/a"},
+        joined(lit_by("lamp.toml"), {"--cells", "16x16", "--source-samples", "1", "--engine", "untimed"})));
+    EXPECT_EQ(one.exit_code, 0);
+    EXPECT_FALSE(contains(one.err, "--word-bits")) << one.err;
+}
+
 /// The lamp of the data set's own file, with samples of the machine against many of the truth.
 TEST(Sources, TheCornellBoxIsLitByItsOwnLamp) {
     SKIP_WITHOUT_SHARED_SCENES();
