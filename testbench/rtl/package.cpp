@@ -184,6 +184,19 @@ std::string RtlPackage::costs() const {
                                                     {"VERDICT", bits.verdict}};
     for (const auto& [name, width] : messages)
         text += constant(std::string(name) + "_CYCLES", link_cycles(width, machine_.link_bits));
+    // Load messages, whose length depends on what they hold.
+    const LoadWire load(context_.settings, context_.arithmetic.formats());
+    int edges_at = 0;  // bits before a span's number of edges
+    bool has_edges = false;
+    for (const WireField& field : load.layout(LoadType::span)) {
+        has_edges = has_edges || field.name == "edges";
+        if (!has_edges) edges_at += field.bits;
+    }
+    text += constant("LOAD_VIEWER_BITS", bits.viewer) + constant("LOAD_POINT_BITS", bits.source[0]) +
+            constant("LOAD_FEATURES_BITS", bits.features) + constant("LOAD_SPAN_BITS", bits.span) +
+            constant("LOAD_EDGE_BITS", has_edges ? bits.edge : 0) +
+            constant("LOAD_END_BITS", bits.end_of_scene) + constant("EDGES_AT", has_edges ? edges_at : 0) +
+            constant("EDGES_BITS", field::edges);
     for (const auto& [name, cycles] : CostTable::entries())
         text += constant("COST_" + upper(name), machine_.costs.*cycles);
     text += constant("COST_RECIPROCAL", machine_.costs.reciprocal(context_.settings.numbers.operators));

@@ -10,9 +10,6 @@
 
 #include "testbench/rtl/bench/coverage.hpp"
 #include "testbench/rtl/bench/hex_record.hpp"
-#ifdef RTL_FAULTS
-#include "Vempty_cell_raycell_numbers.h"
-#endif
 
 namespace rtl {
 namespace {
@@ -191,11 +188,7 @@ int run(int argc, char** argv) {
     }
     VerilatedContext context;
 #ifdef RTL_FAULTS
-    {
-        VerilatedCell any(context, 0, 0);
-        any.settle();
-        any.set_fault(fault);
-    }
+    fault_of_all = fault;
 #else
     if (fault != 0)
         throw std::runtime_error("--fault: this cell was verilated without RTL_FAULTS; expected none");

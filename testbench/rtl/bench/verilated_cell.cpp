@@ -1,5 +1,10 @@
 #include "testbench/rtl/bench/verilated_cell.hpp"
 
+#ifdef RTL_FAULTS
+#include "Vempty_cell___024root.h"
+#include "Vempty_cell_raycell_numbers.h"
+#endif
+
 namespace rtl {
 namespace {
 
@@ -41,6 +46,10 @@ void put_bits(Port& port, int low, int width, std::uint64_t value) {
 
 }  // namespace
 
+#ifdef RTL_FAULTS
+int fault_of_all = 0;
+#endif
+
 static_assert(message_bits % 4 == 0, "a message port is a whole number of digits");
 
 VerilatedCell::VerilatedCell(VerilatedContext& context, int x, int y)
@@ -50,6 +59,9 @@ VerilatedCell::VerilatedCell(VerilatedContext& context, int x, int y)
 }
 
 void VerilatedCell::reset(const std::string& viewer) {
+#ifdef RTL_FAULTS
+    top_->rootp->__PVT__raycell_numbers->fault = fault_of_all;
+#endif
     top_->reset = 1;
     top_->phase = 0;
     begin(0);

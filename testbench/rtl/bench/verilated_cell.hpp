@@ -13,6 +13,10 @@ constexpr int sides = 4;
 constexpr int load_link = 4;
 constexpr int home = 4;  ///< as a goal: the ray store's port
 
+#ifdef RTL_FAULTS
+extern int fault_of_all;  ///< the error that is put into every cell (sv/raycell_numbers.sv); 0: none
+#endif
+
 /// What a cell sends in a cycle.
 struct Sent {
     int index;

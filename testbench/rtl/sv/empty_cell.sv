@@ -130,7 +130,7 @@ module empty_cell
       .known
   );
 
-  logic primary_ready;
+  logic primary_ready, making;
   logic [RAY_BITS-1:0] primary;
   primary_ray maker (
       .clock,
@@ -140,6 +140,7 @@ module empty_cell
       .x,
       .y,
       .ready(primary_ready),
+      .making,
       .message(primary)
   );
 
@@ -354,31 +355,39 @@ module empty_cell
     );
   end
 
+  // The winner's message; one bit of a resource is set at most.
+  logic [SIDES:0][CLASS_BITS-1:0] won_class;
+  logic [SIDES:0][15:0] won_cycles;
+  logic [SIDES:0][RAY_BITS-1:0] won_message;
+  for (genvar r = 0; r <= SIDES; r++) begin : g_winner
+    winner #(
+        .REQUESTERS(REQUESTERS)
+    ) of (
+        .wins(resource_wins[r]),
+        .classes(wanted_class),
+        .cycles(wanted_cycles),
+        .messages(wanted_message),
+        .won_class(won_class[r]),
+        .won_cycles(won_cycles[r]),
+        .won_message(won_message[r])
+    );
+  end
+  logic unused;
+  assign unused = &{1'b0, won_class[PORT], won_cycles[PORT]};  // home is no link
+  assign delivered = |resource_wins[PORT];
+  assign delivered_answer = won_message[PORT][RAY_BITS-1-:INTENSITY_BITS];
+  for (genvar s = 0; s < SIDES; s++) begin : g_sent
+    localparam logic LOADS = s == EAST;
+    assign out_valid[s] = |resource_wins[s] || (LOADS && load_send);
+    assign out_class[s] = won_class[s];  // 0 while loading
+    assign out_cycles[s] = LOADS && loading ? load_cycles : won_cycles[s];
+    assign out_message[s] = LOADS && loading ? load_message : {won_message[s], {(MESSAGE_BITS - RAY_BITS) {1'b0}}};
+  end
+
   always_comb begin
     goes = asks & nothing;
     for (int r = 0; r <= SIDES; r++) goes |= resource_wins[r];
     leaves = goes[REQUESTERS-1:SIDES];
-    delivered = |resource_wins[PORT];
-    delivered_answer = '0;
-    out_valid = '0;
-    out_class = '0;
-    out_cycles = '0;
-    out_message = '0;
-    for (int i = 0; i < REQUESTERS; i++) begin
-      if (resource_wins[PORT][i]) delivered_answer |= wanted_message[i][RAY_BITS-1-:INTENSITY_BITS];
-      for (int s = 0; s < SIDES; s++)
-        if (resource_wins[s][i]) begin
-          out_valid[s] = 1'b1;
-          out_class[s] |= wanted_class[i];
-          out_cycles[s] |= wanted_cycles[i];
-          out_message[s][MESSAGE_BITS-1-:RAY_BITS] |= wanted_message[i];
-        end
-    end
-    if (load_send) begin
-      out_valid[EAST]   = 1'b1;
-      out_cycles[EAST]  = load_cycles;
-      out_message[EAST] = load_message;
-    end
     take = '0;
     for (int s = 0; s < SIDES; s++) begin
       take[s][ANSWERS] = goes[s];
@@ -388,7 +397,7 @@ module empty_cell
       if (first_column) take[LOAD_LINK][0] = 1'b1;
       else take[WEST][0] = 1'b1;
     end
-    idle = &receiver_idle && load_idle && &place_empty && &answers_empty && pixel_idle && !latch;
+    idle = &receiver_idle && load_idle && &place_empty && &answers_empty && pixel_idle && !latch && !making;
   end
 
   // What coverage counts; nothing else reads it.

@@ -21,6 +21,12 @@ module load_unit
     output logic makes_voxel,
     output logic idle
 );
+  // A message's length follows from what it holds. Where sources have kinds it would take a look at each, so
+  // that message goes on as long as it came.
+  function automatic logic [15:0] link_cycles(input int bits);
+    link_cycles = 16'((bits + LINK_BITS - 1) / LINK_BITS);
+  endfunction
+
   localparam int BITS = MESSAGE_BITS + 16;
   localparam int COUNT = $clog2(BUFFER + 1);
   logic [COUNT-1:0] count;
@@ -49,12 +55,24 @@ module load_unit
   assign unused = &{1'b0, arrival, second};
 
   span_head_t span;
+  setup_t viewer;
+  logic [EDGES_BITS-1:0] edges;
+  logic [15:0] came;
   logic [TYPE_BITS-1:0] kind;
   logic ends, there;
   always_comb begin
-    {send_cycles, message} = head;
+    {came, message} = head;
+    viewer = setup_t'(message[MESSAGE_BITS-1-:SETUP_BITS]);
+    edges = LOAD_EDGE_BITS > 0 ? message[MESSAGE_BITS-1-EDGES_AT-:EDGES_BITS] : '0;
     span = span_head_t'(message[MESSAGE_BITS-1-:SPAN_HEAD_BITS]);
     kind = span.message_type;
+    unique case (kind)
+      LOAD_SETUP: send_cycles = link_cycles(LOAD_VIEWER_BITS + int'(viewer.sources) * LOAD_POINT_BITS);
+      LOAD_FEATURES: send_cycles = link_cycles(LOAD_FEATURES_BITS);
+      LOAD_SPAN: send_cycles = link_cycles(LOAD_SPAN_BITS + int'(edges) * LOAD_EDGE_BITS);
+      LOAD_END_OF_SCENE: send_cycles = link_cycles(LOAD_END_BITS);
+      default: send_cycles = came;
+    endcase
     there = enable && count != '0;
     is_setup = there && (kind == LOAD_SETUP || kind == LOAD_SETUP_OF_KINDS);
     makes_voxel = there && kind == LOAD_SPAN && span.X1 == x;
@@ -65,7 +83,7 @@ module load_unit
     idle = count == '0;
   end
   logic unused_fields;
-  assign unused_fields = &{1'b0, span.polygon};
+  assign unused_fields = &{1'b0, span.polygon, viewer};
 
   always_ff @(posedge clock) begin
     if (reset) begin

@@ -11,6 +11,7 @@ module primary_ray
     input  logic [X_BITS-1:0] x,
     input  logic [Y_BITS-1:0] y,
     output logic ready,
+    output logic making,
     output logic [RAY_BITS-1:0] message
 );
   localparam int PLACE_F = PLACE_BITS - 1;
@@ -67,6 +68,7 @@ module primary_ray
   end
   assign message = ray;
   assign ready   = step == READY;
+  assign making  = step != READY && step != IDLE;
 
   always_ff @(posedge clock) begin
     if (reset) begin

@@ -70,8 +70,16 @@ package raycell_numbers;
 
   // Bits of v >= 0 up to its leading one.
   function automatic int bit_length(input acc_t v);
-    bit_length = 0;
-    for (int i = 0; i < ACC; i++) if (v[i]) bit_length = i + 1;
+    acc_t rest;
+    int length;
+    rest = v;
+    length = 0;
+    for (int step = 64; step > 0; step = step / 2)
+      if (step < ACC && (rest >>> step) != 0) begin
+        rest = rest >>> step;
+        length = length + step;
+      end
+    bit_length = rest == 0 ? 0 : length + 1;
   endfunction
 
   // A line between two words of a table, at `rest` of 2^rest_bits.
