@@ -59,6 +59,16 @@ std::string identifier(const std::string& name) {
     return text;
 }
 
+/// Tools read sources as ASCII: a raised dot becomes *, the rest is left out.
+std::string ascii(const std::string& text) {
+    std::string plain;
+    for (const char c : text) {
+        if (static_cast<unsigned char>(c) < 0x80) plain += c;
+        if (static_cast<unsigned char>(c) == 0xb7) plain += '*';
+    }
+    return plain;
+}
+
 /// The first `count` fields of a layout (0: all) as members. A reciprocal "1/dx" has two: mantissa, exponent.
 RtlPackage::Struct struct_of(const std::string& name, const std::vector<WireField>& layout,
                              std::size_t count = 0) {
@@ -237,7 +247,7 @@ std::string RtlPackage::types() const {
         text += "\n" + constant(upper(made.name) + "_BITS", made.bits) + "  typedef struct packed {\n";
         for (const WireField& member : made.members) {
             const std::string range = member.bits > 1 ? "[" + std::to_string(member.bits - 1) + ":0] " : "";
-            text += "    logic " + range + member.name + ";  // " + member.meaning + "\n";
+            text += "    logic " + range + member.name + ";  // " + ascii(member.meaning) + "\n";
         }
         text += "  } " + made.name + "_t;\n";
     }

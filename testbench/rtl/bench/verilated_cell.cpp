@@ -1,7 +1,6 @@
 #include "testbench/rtl/bench/verilated_cell.hpp"
 
 #ifdef RTL_FAULTS
-#include "Vempty_cell___024root.h"
 #include "Vempty_cell_raycell_numbers.h"
 #endif
 
@@ -60,7 +59,8 @@ VerilatedCell::VerilatedCell(VerilatedContext& context, int x, int y)
 
 void VerilatedCell::reset(const std::string& viewer) {
 #ifdef RTL_FAULTS
-    top_->rootp->__PVT__raycell_numbers->fault = fault_of_all;
+    top_->eval();  // its initial value comes first
+    top_->__PVT__raycell_numbers->fault = fault_of_all;
 #endif
     top_->reset = 1;
     top_->phase = 0;
