@@ -1,11 +1,10 @@
 // cell_tb: one cell with drivers on its sides. Runs scripted scenarios, or golden vectors of a real run.
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <systemc>
 
 #include "cells/probes/probe.hpp"
-#include "model/files/input_file.hpp"
+#include "testbench/cell/record.hpp"
 #include "testbench/cell/scenarios.hpp"
 #include "testbench/cell/vectors.hpp"
 #include "testbench/common/configuration.hpp"
@@ -31,55 +30,6 @@ struct Options {
     bool list = false;
     bool quiet = false;
 };
-
-/// The options of a recorded run, from the configuration in its head.
-RenderOptions recorded_options(const GoldenFile& file) {
-    RenderOptions options;
-    CLI::App app{"configuration"};
-    app.name("raycell render");
-    OptionTable table(app);
-    add_scene_options(table, options);
-    add_machine_options(table, options);
-    CLI::App other{"other"};
-    RenderOptions ignored;
-    OptionTable other_table(other);
-    add_watch_options(other_table, ignored);
-    add_recording_options(other_table, ignored);
-    add_array_options(other_table, ignored);
-    add_probe_options(other_table, ignored);
-    std::vector<std::string> words =
-        arguments_from_text(file.configuration, file.name + ": config", app, &other);
-    std::reverse(words.begin(), words.end());
-    try {
-        app.parse(words);
-    } catch (const CLI::ParseError& error) {
-        throw UsageError(file.name + ": config: " + error.what());
-    }
-    return options;
-}
-
-/// A file of golden vectors, and the cell that it is of.
-struct Record {
-    GoldenFile file;
-    CellSetup setup;
-};
-
-Record record_of_file(const std::string& path) {
-    const std::string fault = input_fault(path);
-    if (!fault.empty())
-        throw UsageError(path + ": " + fault +
-                         "; expected golden vectors, as 'raycell render --golden' writes them");
-    std::ifstream in(path);
-    Record record{read_golden(in, path), {}};
-    const RenderOptions options = recorded_options(record.file);
-    record.setup.picture = options.picture;
-    record.setup.machine = options.machine;
-    if (options.picture.own_samples() != 1)
-        throw UsageError(path + ": a cell has " + std::to_string(options.picture.own_samples()) +
-                         " primary rays; expected a record of cells with one each");
-    read_setup(record.file, record.setup);
-    return record;
-}
 
 std::vector<Scenario> chosen_scenarios(const Options& options) {
     std::vector<Scenario> all = all_scenarios();

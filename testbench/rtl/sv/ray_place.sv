@@ -1,0 +1,73 @@
+// A place of rays: the buffer of one side and class. Its oldest ray is untested, in test or decided.
+module ray_place
+  import raycell_pkg::*;
+  import raycell_cell::*;
+#(
+    parameter int DEPTH = BUFFER
+) (
+    input  logic clock,
+    input  logic reset,
+    input  time_t now,
+    input  logic arrives,
+    input  logic [RAY_BITS-1:0] arrives_message,
+    input  logic leaves,
+    input  logic test_starts,
+    input  logic test_ends,  // at the end of this cycle
+    input  decision_t found,
+    output logic untested,  // behind a ray that leaves in this cycle, too
+    output logic [RAY_BITS-1:0] to_test,
+    output logic decided,
+    output time_t since,
+    output decision_t decision,
+    output logic [RAY_BITS-1:0] message,
+    output logic empty
+);
+  localparam int COUNT = $clog2(DEPTH + 1);
+  localparam logic [1:0] UNTESTED = 0, IN_TEST = 1, DECIDED = 2;
+  logic [COUNT-1:0] count;
+  logic [RAY_BITS-1:0] second;
+  logic [1:0] stage;
+  time_t arrival;
+
+  message_buffer #(
+      .BITS (RAY_BITS),
+      .DEPTH(DEPTH)
+  ) buffer (
+      .clock,
+      .reset,
+      .push(arrives),
+      .push_message(arrives_message),
+      .push_arrival(now + 1'b1),
+      .pop(leaves),
+      .replace(test_ends),
+      .replacement(moved(message, found)),
+      .count,
+      .head(message),
+      .arrival,
+      .second
+  );
+  logic unused;
+  assign unused = &{1'b0, arrival};
+
+  assign empty = count == '0;
+  assign decided = !empty && stage == DECIDED;
+  assign untested = leaves ? int'(count) > 1 : !empty && stage == UNTESTED;
+  assign to_test = leaves ? second : message;
+
+  always_ff @(posedge clock) begin
+    if (reset) begin
+      stage <= UNTESTED;
+      since <= '0;
+      decision <= '0;
+    end else if (test_starts) begin
+      stage <= IN_TEST;
+    end else if (leaves) begin
+      stage <= UNTESTED;
+    end else if (test_ends) begin
+      // What has left the cube stays in its place and is tested once more.
+      stage <= found.need == NEED_TEST ? UNTESTED : DECIDED;
+      since <= now + 1'b1;
+      decision <= found;
+    end
+  end
+endmodule

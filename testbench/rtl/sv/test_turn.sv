@@ -1,0 +1,49 @@
+// Whose turn it is to be tested: round robin over the places, from the one behind the last that was tested
+// on, for as many units as are free.
+module test_turn
+  import raycell_pkg::*;
+  import raycell_numbers::*;
+  import raycell_cell::*;
+(
+    input  logic clock,
+    input  logic reset,
+    input  logic enable,
+    input  logic [PLACES-1:0] untested,
+    input  logic [TRAVERSAL_UNITS-1:0] busy,
+    output logic [TRAVERSAL_UNITS-1:0] start,
+    output logic [TRAVERSAL_UNITS-1:0][PLACE_INDEX_BITS-1:0] place,
+    output logic [PLACES-1:0] started
+);
+  logic [PLACE_INDEX_BITS-1:0] next, next_after;
+
+  always_comb begin
+    logic [PLACES-1:0] left;
+    logic found;
+    left = enable ? untested : '0;
+    next_after = next;
+    start = '0;
+    place = '0;
+    for (int u = 0; u < TRAVERSAL_UNITS; u++) begin
+      found = 1'b0;
+      if (!busy[u]) begin
+        for (int round = 0; round < 2; round++)
+          for (int p = 0; p < PLACES; p++)
+            if (!found && left[p] && (round == 1 || p >= int'(next_after))) begin
+              found = 1'b1;
+              start[u] = 1'b1;
+              place[u] = PLACE_INDEX_BITS'(p);
+            end
+        if (found) begin
+          left[place[u]] = 1'b0;
+          next_after = fault == FAULT_TURN ? next : place[u] + 1'b1;
+        end
+      end
+    end
+    started = enable ? untested & ~left : '0;
+  end
+
+  always_ff @(posedge clock) begin
+    if (reset) next <= '0;
+    else next <= next_after;
+  end
+endmodule
