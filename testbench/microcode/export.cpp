@@ -75,14 +75,14 @@ std::string export_programs(const MicroSetting& setting, const MicroExport& want
     std::vector<const MicroProgram*> programs;
     for (const auto& trial : trials) programs.push_back(&trial->program());
     const MicroImage image(programs, false);
-    std::vector<std::string> suffixes = {"datapath_package.sv", "programs.hex", "tables.hex", "programs.txt"};
+    std::vector<std::string> suffixes = {"microcode.sv", "programs.hex", "tables.hex", "programs.txt"};
     for (const MicroProgram* p : programs) {
         for (const char* end : {".registers.txt", ".registers.hex", ".vectors.hex"})
             suffixes.push_back(name_in_file(p->name) + end);
     }
     OutputSet files(wanted.folder + "/");
     files.announce(suffixes);
-    files.write("datapath_package.sv", image.package());
+    files.write("microcode.sv", image.package());
     files.write("programs.hex", image.instruction_file());
     files.write("tables.hex", image.table_file());
     std::string index;

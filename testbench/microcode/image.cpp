@@ -242,7 +242,7 @@ std::vector<std::int64_t> MicroImage::initial_values(std::size_t program) const 
 std::string MicroImage::package() const {
     std::string text =
         "// Written by microcode_tb: widths, sizes and the encoding of the microprograms beside this file.\n"
-        "package datapath_package;\n"
+        "package microcode;\n"
         "  // verilator lint_off UNUSEDPARAM\n";
     const auto number = [&](const std::string& name, std::size_t value) {
         text += "  localparam int " + name + " = " + std::to_string(value) + ";\n";

@@ -1,7 +1,7 @@
 // Runs every program of programs.txt, in the current folder, over its vectors: all registers before are written,
 // all after and the cycles are compared. Prints a line a program, each difference up to a limit, and a sum.
 module datapath_tb;
-  import datapath_package::*;
+  import microcode::*;
   localparam int NAME_BITS = 8 * 64;
   localparam int MOST_SHOWN = 10;
 

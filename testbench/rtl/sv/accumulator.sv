@@ -1,10 +1,10 @@
 // The multiplier and the accumulator: it is loaded, or a word or a product is added to it.
 module accumulator #(
-    parameter int REGISTER_BITS = datapath_package::REGISTER_BITS,
-    parameter int OPERAND_BITS = datapath_package::OPERAND_BITS,
-    parameter int ACCUMULATOR_BITS = datapath_package::ACCUMULATOR_BITS,
-    parameter int PART_BITS = datapath_package::A_PART_BITS,
-    parameter int SHIFT_BITS = datapath_package::SHIFT_BITS
+    parameter int REGISTER_BITS = microcode::REGISTER_BITS,
+    parameter int OPERAND_BITS = microcode::OPERAND_BITS,
+    parameter int ACCUMULATOR_BITS = microcode::ACCUMULATOR_BITS,
+    parameter int PART_BITS = microcode::A_PART_BITS,
+    parameter int SHIFT_BITS = microcode::SHIFT_BITS
 ) (
     input  logic                               clock,
     input  logic                               enable,

@@ -1,6 +1,6 @@
 // Adds, subtracts, compares.
 module adder #(
-    parameter int REGISTER_BITS = datapath_package::REGISTER_BITS
+    parameter int REGISTER_BITS = microcode::REGISTER_BITS
 ) (
     input  logic signed [REGISTER_BITS-1:0] a,
     input  logic signed [REGISTER_BITS-1:0] b,

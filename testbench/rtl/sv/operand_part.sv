@@ -1,8 +1,8 @@
 // The part of a register that a multiplier's operand takes: all parts but the last have no sign.
 module operand_part #(
-    parameter int REGISTER_BITS = datapath_package::REGISTER_BITS,
-    parameter int OPERAND_BITS = datapath_package::OPERAND_BITS,
-    parameter int PART_BITS = datapath_package::A_PART_BITS
+    parameter int REGISTER_BITS = microcode::REGISTER_BITS,
+    parameter int OPERAND_BITS = microcode::OPERAND_BITS,
+    parameter int PART_BITS = microcode::A_PART_BITS
 ) (
     input  logic signed [REGISTER_BITS-1:0] value,
     input  logic        [PART_BITS-1:0]     part,

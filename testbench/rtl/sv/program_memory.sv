@@ -1,8 +1,8 @@
 // The microprograms, a word an instruction.
 module program_memory #(
-    parameter int WORDS = datapath_package::INSTRUCTIONS,
-    parameter int ADDRESS_BITS = datapath_package::INSTRUCTION_ADDRESS_BITS,
-    parameter int BITS = datapath_package::INSTRUCTION_BITS
+    parameter int WORDS = microcode::INSTRUCTIONS,
+    parameter int ADDRESS_BITS = microcode::INSTRUCTION_ADDRESS_BITS,
+    parameter int BITS = microcode::INSTRUCTION_BITS
 ) (
     input  logic [ADDRESS_BITS-1:0] address,
     output logic [BITS-1:0]         word

@@ -1,8 +1,8 @@
 // Registers: two are read, and two written, in a cycle. The second is written by table lines alone.
 module register_file #(
-    parameter int REGISTER_BITS = datapath_package::REGISTER_BITS,
-    parameter int REGISTERS = datapath_package::REGISTERS,
-    parameter int ADDRESS_BITS = datapath_package::REGISTER_ADDRESS_BITS
+    parameter int REGISTER_BITS = microcode::REGISTER_BITS,
+    parameter int REGISTERS = microcode::REGISTERS,
+    parameter int ADDRESS_BITS = microcode::REGISTER_ADDRESS_BITS
 ) (
     input  logic                            clock,
     input  logic        [ADDRESS_BITS-1:0]  a_address,

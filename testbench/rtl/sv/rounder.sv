@@ -1,9 +1,9 @@
 // The accumulator / 2^distance, to the nearest (ties to even) or cut off, saturated to a number of bits.
 module rounder #(
-    parameter int REGISTER_BITS = datapath_package::REGISTER_BITS,
-    parameter int ACCUMULATOR_BITS = datapath_package::ACCUMULATOR_BITS,
+    parameter int REGISTER_BITS = microcode::REGISTER_BITS,
+    parameter int ACCUMULATOR_BITS = microcode::ACCUMULATOR_BITS,
     parameter int DISTANCE_BITS = 12,
-    parameter int SIZE_BITS = datapath_package::EXTRA_BITS
+    parameter int SIZE_BITS = microcode::EXTRA_BITS
 ) (
     input  logic signed [ACCUMULATOR_BITS-1:0] value,
     input  logic signed [DISTANCE_BITS-1:0]    distance,
@@ -20,6 +20,7 @@ module rounder #(
   localparam int LEFT_BITS = $clog2(MOST_LEFT + 1);
 
   logic                               to_left;
+  logic signed [DISTANCE_BITS-1:0]    opposite;
   logic        [RIGHT_BITS-1:0]       right;
   logic        [LEFT_BITS-1:0]        left;
   logic signed [ACCUMULATOR_BITS:0]   guarded, cut;  // with the bit below the last one
@@ -30,7 +31,8 @@ module rounder #(
 
   assign to_left = distance < 0;
   assign right = to_left ? '0 : 32'(distance) > MOST_RIGHT ? RIGHT_BITS'(MOST_RIGHT) : RIGHT_BITS'(distance);
-  assign left = !to_left ? '0 : -32'(distance) > MOST_LEFT ? LEFT_BITS'(MOST_LEFT) : LEFT_BITS'(-distance);
+  assign opposite = -distance;
+  assign left = !to_left ? '0 : 32'(opposite) > MOST_LEFT ? LEFT_BITS'(MOST_LEFT) : LEFT_BITS'(opposite);
 
   assign guarded = {value, 1'b0};
   assign cut = guarded >>> right;

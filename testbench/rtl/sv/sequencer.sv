@@ -1,7 +1,7 @@
 // Fetches instructions. The next one is fetched while one runs, so that `end` takes no cycle.
 module sequencer #(
-    parameter int ADDRESS_BITS = datapath_package::INSTRUCTION_ADDRESS_BITS,
-    parameter int BITS = datapath_package::INSTRUCTION_BITS
+    parameter int ADDRESS_BITS = microcode::INSTRUCTION_ADDRESS_BITS,
+    parameter int BITS = microcode::INSTRUCTION_BITS
 ) (
     input  logic                    clock,
     input  logic                    reset,
@@ -24,6 +24,6 @@ module sequencer #(
     end else if (start || busy) begin
       instruction <= fetched;
       place <= next;
-      busy <= fetched[datapath_package::OPERATION_LOW+:datapath_package::OPERATION_BITS] != datapath_package::END;
+      busy <= fetched[microcode::OPERATION_LOW+:microcode::OPERATION_BITS] != microcode::END;
     end
 endmodule

@@ -1,8 +1,8 @@
 // The operators' tables: where each line starts, and how much it rises.
 module table_memory #(
-    parameter int LINES = datapath_package::LINES,
-    parameter int ADDRESS_BITS = datapath_package::LINE_ADDRESS_BITS,
-    parameter int BITS = datapath_package::LINE_BITS
+    parameter int LINES = microcode::LINES,
+    parameter int ADDRESS_BITS = microcode::LINE_ADDRESS_BITS,
+    parameter int BITS = microcode::LINE_BITS
 ) (
     input  logic        [ADDRESS_BITS-1:0] address,
     output logic signed [BITS-1:0]         start,
