@@ -64,12 +64,6 @@ void write_vectors(NewFile& file, const MicroImage& image, MicroTrial& trial, co
 
 }  // namespace
 
-std::string name_in_file(std::string name) {
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == ' ' || c == '/'; }, '_');
-    return name;
-}
-
 std::string export_programs(const MicroSetting& setting, const MicroExport& wanted) {
     const std::vector<std::unique_ptr<MicroTrial>> trials = chosen_trials(setting, wanted.programs);
     std::vector<const MicroProgram*> programs;

@@ -20,7 +20,4 @@ struct MicroExport {
 /// says what was written.
 std::string export_programs(const MicroSetting& setting, const MicroExport& wanted);
 
-/// A name without blanks, for files and fields.
-std::string name_in_file(std::string name);
-
 }  // namespace raycell

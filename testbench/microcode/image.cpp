@@ -271,4 +271,10 @@ std::string MicroImage::package() const {
     return text + "endpackage\n";
 }
 
+std::string name_in_file(std::string name) {
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ' ' || c == '/'; }, '_');
+    return name;
+}
+
 }  // namespace raycell

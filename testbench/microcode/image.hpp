@@ -72,4 +72,7 @@ class MicroImage {
     int shift_bits_ = 1;  ///< two's complement
 };
 
+/// A name without blanks, for files and fields.
+std::string name_in_file(std::string name);
+
 }  // namespace raycell

@@ -40,13 +40,14 @@ def build(folder, icarus, faults, bench="datapath_tb"):
     bench_file = os.path.join(HERE, bench + ".sv")
     units = [f"-I{UNITS}"]
     defines = ["-DDATAPATH_FAULTS"] if faults else []
+    packages = [name for name in ("microcode.sv", "visit.sv") if os.path.exists(os.path.join(folder, name))]
     if icarus:
         run(["iverilog", "-g2012", *units, f"-y{UNITS}", "-Y.sv", *defines, "-s", bench, "-o", "bench",
-             "microcode.sv", bench_file], folder)
+             *packages, bench_file], folder)
         return ["vvp", "-n", "bench"]
     run(["verilator", "--lint-only", "-Wall", *units, *defines, "microcode.sv", os.path.join(UNITS, "datapath.sv"),
          "--top-module", "datapath"], folder)
-    run(["verilator", "--binary", "--timing", "-O3", "-Wno-fatal", *units, *defines, "microcode.sv", bench_file,
+    run(["verilator", "--binary", "--timing", "-O3", "-Wno-fatal", *units, *defines, *packages, bench_file,
          "--top-module", bench, "--Mdir", "built", "-j", "1", "-CFLAGS", "-O1"], folder)
     return [f"built/V{bench}"]
 
