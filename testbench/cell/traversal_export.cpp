@@ -331,10 +331,10 @@ std::string export_traversal(const std::vector<TraversalRecord>& records, const 
     std::string packages, index;
     std::size_t most_words = 0, rays = 0, voxels = 0;
     std::uint64_t charged = 0, cycles = 0, copies = 0, table = 0;
-    struct Cell {
+    struct Recorded {
         std::string store, vectors;
     };
-    std::vector<Cell> cells;
+    std::vector<Recorded> cells;
     for (const TraversalRecord& record : records) {
         const Context context(record.setup->scene, record.setup->picture);
         const VisitCalls calls(context);
@@ -344,7 +344,7 @@ std::string export_traversal(const std::vector<TraversalRecord>& records, const 
             throw GoldenError(record.file->name + ": its microprograms differ from those of " +
                               records.front().file->name + "; expected records of one run");
         MicroVisit micro(calls, context);
-        Cell cell;
+        Recorded cell;
         std::size_t tests = 0;
         const auto add = [&](Word value) {
             cell.vectors += MicroImage::hexadecimal(value, image.register_bits()) + "\n";
