@@ -54,6 +54,28 @@ MicroProgram plane_program(const MicroSetting& setting, HitTest rung);
 /// Out: inside (0 or 1).
 MicroProgram edge_program(const MicroSetting& setting);
 
+// What else a visit of a ray in a cell computes (visit_cell(), nearest_in_cell()); the cost table has no entries
+// for these.
+
+/// The ray ends at its source, in this cell. In: reach, z, dz. Out: t, z1 (the depth there).
+MicroProgram reached_program(const MicroSetting& setting);
+
+/// The ray's depths in the cell, with a hair on both sides. In: z, z1. Out: low, high.
+MicroProgram range_program(const MicroSetting& setting, double hair);
+
+/// These depths end at a hit, a tie beyond it. In: z, dz, t, low, high. Out: low, high.
+MicroProgram narrow_program(const MicroSetting& setting, double tie);
+
+/// Whether a hit replaces the nearest one so far. In: t, best (its t), lower (1: its polygon's id is lower).
+/// Out: nearer (0 or 1).
+MicroProgram nearer_program(const MicroSetting& setting, double tie);
+
+/// Whether a hit is at the source or beyond it. In: t, reach. Out: there (0 or 1).
+MicroProgram at_source_program(const MicroSetting& setting, double hair);
+
+/// A point in a voxel's projection. In: px to pz, base, "drop x", "drop z". Out: u, v.
+MicroProgram projection_program(const MicroSetting& setting);
+
 /// view_source(), and its distance as a word of `reach`, whose largest counts as infinite. In: sx to sz (the
 /// source's mantissas), exponent (Formats::place_exponent), px to pz (the point in the cell), "cell x",
 /// "cell y", nx to nz. Out: lx to lz, cosine, reach.

@@ -6,6 +6,7 @@
 #include "cells/probes/probe.hpp"
 #include "testbench/cell/record.hpp"
 #include "testbench/cell/scenarios.hpp"
+#include "testbench/cell/traversal_export.hpp"
 #include "testbench/cell/vectors.hpp"
 #include "testbench/common/configuration.hpp"
 #include "testbench/common/entry.hpp"
@@ -27,6 +28,7 @@ struct Options {
     std::vector<std::string> replay;
     std::string vcd;
     std::string write;
+    std::string folder;
     bool list = false;
     bool quiet = false;
 };
@@ -95,6 +97,8 @@ Chosen recorded(const Options& options) {
 void check(const Options& options, std::size_t scenarios, std::size_t traversals) {
     if (!options.replay.empty() && (!options.names.empty() || options.list || !options.write.empty()))
         throw UsageError("--replay: expected no scenario, --list or --write beside it");
+    if (!options.folder.empty() && (scenarios > 0 || traversals == 0 || !options.vcd.empty()))
+        throw UsageError("--hardware: expected records of traversal units alone to --replay, and no --vcd");
     if ((scenarios != 1 || traversals > 0) && !options.vcd.empty())
         throw UsageError("--vcd: it shows one cell; expected one scenario or one file to replay");
     if (scenarios != 1 && !options.write.empty() && !is_folder(options.write))
@@ -166,6 +170,16 @@ int run(const Options& options) {
     const Chosen chosen = options.replay.empty() ? Chosen{chosen_scenarios(options), {}} : recorded(options);
     const std::vector<Scenario>& scenarios = chosen.scenarios;
     check(options, scenarios.size(), chosen.traversals.size());
+    if (!options.folder.empty()) {
+        std::vector<TraversalRecord> records;
+        for (const Record& record : chosen.traversals) records.push_back({&record.file, &record.setup});
+        try {
+            std::cout << export_traversal(records, options.folder);
+        } catch (const std::invalid_argument& error) {
+            throw UsageError(records.front().file->name + ": " + error.what());
+        }
+        return exit_done;
+    }
     if (options.list) {
         for (const Scenario& scenario : scenarios)
             std::cout << scenario.name << ": " << scenario.says << '\n';
@@ -204,6 +218,10 @@ int run(int argc, char** argv) {
            "write a scenario as golden vectors instead of running it; several, or all, into a folder: a name "
            "that ends in /")
         ->type_name("FILE|FOLDER/");
+    app.add_option(
+           "--hardware", options.folder,
+           "write the records of one run's traversal units for traversal.sv: microprograms, voxels, rays")
+        ->type_name("FOLDER");
     app.add_flag("--quiet", options.quiet, "print nothing but failures");
     return parse_and_run(app, {argv + 1, argv + argc}, [&] { return run(options); });
 }

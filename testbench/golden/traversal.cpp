@@ -103,13 +103,14 @@ std::vector<std::string> decision_names(const std::string& decision) {
 /// Reads the lines behind the head of a file.
 class Replay {
   public:
-    Replay(const GoldenFile& file, const CellSetup& setup, std::size_t most)
+    Replay(const GoldenFile& file, const CellSetup& setup, std::size_t most, const TestObserver& observer)
         : file_(file),
           setup_(setup),
           context_(setup_.scene, setup_.picture),
           words_(context_.arithmetic),
           packing_(context_, setup_.machine),
-          most_(most) {}
+          most_(most),
+          observer_(observer) {}
 
     TraversalReplay run() {
         for (const GoldenFile::Line& line : file_.lines) {
@@ -187,6 +188,7 @@ class Replay {
         tested_ = false;
         const TraversalSetting setting{store_, context_, setup_.machine, setup_.x, setup_.y};
         const Visit visit = visit_cell(store_, ray_, context_);
+        if (observer_) observer_(setting, ray_, visit);
         const std::string decision = decision_of(words_, setting, ray_, visit);
         const std::uint64_t done = cycle_ + visit_cycles(visit, setup_.picture, setup_.machine.costs);
         const std::vector<std::string> is = tokens_of(std::to_string(done) + " found " + decision);
@@ -215,6 +217,7 @@ class Replay {
     std::uint64_t cycle_ = 0;
     bool tested_ = false;  ///< `ray_` was read, its decision was not
     std::size_t most_;
+    const TestObserver& observer_;
     TraversalReplay replay_;
 };
 
@@ -261,8 +264,9 @@ std::string decision_of(const Words& words, const TraversalSetting& setting, con
            outcome_of(words, setting, ray, visit);
 }
 
-TraversalReplay replay_traversal(const GoldenFile& file, const CellSetup& setup, std::size_t most) {
-    return Replay(file, setup, most).run();
+TraversalReplay replay_traversal(const GoldenFile& file, const CellSetup& setup, std::size_t most,
+                                 const TestObserver& observer) {
+    return Replay(file, setup, most, observer).run();
 }
 
 }  // namespace raycell

@@ -2,6 +2,7 @@
 // (docs/reference/cell_tb.md).
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,11 @@ struct TraversalReplay {
     std::vector<std::string> failures;  ///< a line each, `most` at most
     std::size_t tests = 0;
 };
+/// What a file's rays do, one after the other.
+using TestObserver = std::function<void(const TraversalSetting&, const Ray&, const Visit&)>;
 /// Tests all rays of a file again and compares the decisions. Throws GoldenError for lines that make no
 /// sense.
-TraversalReplay replay_traversal(const GoldenFile& file, const CellSetup& setup, std::size_t most = 10);
+TraversalReplay replay_traversal(const GoldenFile& file, const CellSetup& setup, std::size_t most = 10,
+                                 const TestObserver& observer = {});
 
 }  // namespace raycell

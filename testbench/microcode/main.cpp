@@ -7,6 +7,7 @@
 #include "testbench/common/entry.hpp"
 #include "testbench/common/options.hpp"
 #include "testbench/microcode/counts.hpp"
+#include "testbench/microcode/export.hpp"
 #include "testbench/raycell/commands.hpp"
 
 namespace raycell {
@@ -19,6 +20,8 @@ struct Options {
     std::uint64_t seed = 1;
     std::string datapath;
     std::string listing;
+    std::string folder;
+    std::string programs;
     bool progress = false;
     bool costs = false;
 };
@@ -50,6 +53,11 @@ void add_options(OptionTable& table, Options& o) {
         "them beside the table");
     table.flag("progress", o.progress, "says on standard error which programs are done");
     table.text("listing", o.listing, "PROGRAM", "prints the instructions of this program, too");
+    table.text(
+        "export", o.folder, "FOLDER",
+        "writes the programs of a datapath of one multiplier (word, if --datapath says none) and --runs "
+        "vectors of each there instead, for hardware");
+    table.text("programs", o.programs, "NAMES", "with --export: these alone, commas between them");
 }
 
 std::string one_digit(double value) {
@@ -116,6 +124,16 @@ int run(const Options& o) {
         if (o.datapath.empty() || o.datapath == datapath.name) chosen.push_back(datapath);
     }
     if (chosen.empty()) throw UsageError("--datapath: there is no '" + o.datapath + "'; expected " + names);
+    if (!o.folder.empty()) {
+        setting.datapath = chosen.front();
+        try {
+            std::cout << export_programs(setting, {o.folder, o.programs, o.runs, o.seed});
+        } catch (const std::invalid_argument& error) {
+            throw UsageError(error.what());
+        }
+        return exit_done;
+    }
+    if (!o.programs.empty()) throw UsageError("--programs is for --export");
     bool listed = o.listing.empty();
     std::cout << "Words of " << o.numbers.word_bits << " bits; " << o.runs
               << " random inputs of each program equal the model.\n\n";

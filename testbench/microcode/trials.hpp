@@ -61,6 +61,9 @@ class MicroTrial {
 
     const MicroProgram& program() const { return program_; }
     int accumulator_bits() const { return machine_.accumulator_bits(); }
+    /// All registers before and after the last step.
+    const std::vector<MicroMachine::Value>& inputs() const { return inputs_; }
+    const std::vector<MicroMachine::Value>& results() const { return machine_.values(); }
     const MicroCost& cost() const { return cost_; }
     /// The entries of the cost table that the program stands for, as "compare_edge + reciprocal".
     std::string cost_name() const;

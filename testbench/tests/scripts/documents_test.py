@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 # Run by other tests, or for other machines: their options are tried with --help alone, or not at all.
-HELP_ONLY = ("scripts/render", "scripts/test", "scripts/study")
+HELP_ONLY = ("scripts/render", "scripts/test", "scripts/study", "scripts/rtl_gates")
 NOT_HERE = ("cmake", "gtkwave", "export", "snakemake")
 SMALL = {"render": "32x32", "truth": "32x32", "size": "12x12"}
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
