@@ -9,20 +9,19 @@ import shutil
 import subprocess
 import sys
 
-# Number in raycell_numbers.sv: what the first difference has to say.
+WHEN = r"cycle \d+: .*(field '|expected in cycle|it did not do)"
+# Number in raycell_numbers.sv: its name, the records that find it, what the first difference has to say. Of the errors that are
+# not here (order by age, turns, leaving just at a face, back-off) these records tell nothing.
 FAULTS = {
-    1: ("rounding", r"cycle \d+: out .* field '"),
-    2: ("tie", r"cycle \d+: (out|take) "),
-    3: ("credit", r"cycle \d+: (out|take) .*expected in cycle"),
-    4: ("age", r"cycle \d+: (out|take) "),
-    5: ("order", r"cycle \d+: (out|take) "),
-    6: ("turn", r"cycle \d+: (out|take) "),
-    7: ("route", r"cycle \d+: (out|take) "),
-    9: ("wires", r"cycle \d+: (out|take) .*expected in cycle"),
-    10: ("back-off", r"cycle \d+: (out|take) "),
+    1: ("rounding", "runs", r"cycle \d+: out .* field '"),
+    2: ("tie", "runs", WHEN),
+    3: ("credit", "scenarios", WHEN),
+    4: ("age", "scenarios", WHEN),
+    7: ("route", "scenarios", WHEN),
+    9: ("wires", "runs", WHEN),
 }
-# Of these no scenario tells anything: they need runs.
-IN_RUNS = {1, 2, 10}
+# Of other machines, which would take a verilated cell each.
+OTHER_MACHINES = ("back_outside", "front_outside", "busy_wires", "two_units")
 LEAST = {"scenarios": 20, "runs": 40}
 
 
@@ -41,7 +40,7 @@ def records_of(case, source, build, folder):
                           "--quiet", "--golden", "0..23,0..1", "--golden", "0..23,21..23", "-o", folder / "run")
     if code != 0:
         sys.exit(f"recording: code {code}\n{text}")
-    return sorted(folder.glob("*.txt"))
+    return sorted(path for path in folder.glob("*.txt") if path.stem not in OTHER_MACHINES)
 
 
 def replay(source, build, records, *options):
@@ -51,7 +50,7 @@ def replay(source, build, records, *options):
 
 def compared(case, source, build):
     records = records_of(case, source, build, build / f"rtl-{case}")
-    code, text = replay(source, build, records, *(["--faults"] if case == "scenarios" else []))
+    code, text = replay(source, build, records, "--faults")  # the cell that `faults` needs, too: built once
     print(text)
     replayed = sum(int(n) for n in re.findall(r"(\d+) records, 0 with differences", text))
     if code != 0 or replayed < LEAST[case]:
@@ -60,11 +59,10 @@ def compared(case, source, build):
 
 def found(source, build):
     failures = 0
-    records = {True: records_of("runs", source, build, build / "rtl-faults-runs"),
-               False: records_of("scenarios", source, build, build / "rtl-faults-scenarios")}
-    for fault, (name, expected) in FAULTS.items():
-        code, text = replay(source, build, records[fault in IN_RUNS], "--faults", "--fault", fault)
-        first = text.splitlines()[0 if "left out" not in text.splitlines()[0] else 1]
+    records = {case: records_of(case, source, build, build / f"rtl-faults-{case}") for case in LEAST}
+    for fault, (name, case, expected) in FAULTS.items():
+        code, text = replay(source, build, records[case], "--faults", "--fault", fault)
+        first = next((line for line in text.splitlines() if "left out" not in line), "nothing")
         fine = code == 2 and re.search(expected, first)
         failures += not fine
         print(f"{'found' if fine else 'MISSED'}: {name}: {first}")
