@@ -54,8 +54,8 @@ MicroProgram plane_program(const MicroSetting& setting, HitTest rung);
 /// Out: inside (0 or 1).
 MicroProgram edge_program(const MicroSetting& setting);
 
-// What else a visit of a ray in a cell computes (visit_cell(), nearest_in_cell()); the cost table has no entries
-// for these.
+// What else a visit of a ray in a cell computes (visit_cell(), nearest_in_cell()); the cost table has no
+// entries for these.
 
 /// The ray ends at its source, in this cell. In: reach, z, dz. Out: t, z1 (the depth there).
 MicroProgram reached_program(const MicroSetting& setting);
