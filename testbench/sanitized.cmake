@@ -24,7 +24,8 @@ if(NOT RAYCELL_SANITIZE)
 
   # The reader of golden vectors: it needs SystemC's types, so its tests have an sc_main.
   add_executable(golden_tests_sanitized tests/sc_main.cpp ${golden_tests} golden/words.cpp golden/messages.cpp
-      golden/file.cpp golden/setup.cpp golden/packing.cpp golden/memory_file.cpp golden/traversal.cpp)
+      golden/file.cpp golden/setup.cpp golden/packing.cpp golden/memory_file.cpp golden/traversal.cpp
+      rtl/package.cpp)
   target_link_libraries(golden_tests_sanitized PRIVATE raycell_sanitized PkgConfig::SYSTEMC GTest::gtest)
   raycell_sanitized(golden_tests_sanitized)
   add_test(NAME "sanitized: golden" COMMAND golden_tests_sanitized --gtest_brief=1)
