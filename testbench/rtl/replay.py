@@ -116,7 +116,8 @@ def main():
                         help="leave out records in whose cell a span begins, instead of failing at it")
     parser.add_argument("--every-cycle", action="store_true", help="run cycles in which the cell is idle, too")
     parser.add_argument("--faults", action="store_true", help="build a cell that errors can be put into")
-    parser.add_argument("--fault", type=int, default=0, help="put this error in, with --faults (raycell_numbers.sv)")
+    parser.add_argument("--fault", type=int, action="append",
+                        help="put this error in, with --faults (raycell_numbers.sv); several: a replay for each")
     options = parser.parse_args()
     options.work = os.path.abspath(options.work)
     os.makedirs(options.work, exist_ok=True)
@@ -128,12 +129,14 @@ def main():
     for (package, header), lines in found.items():
         command = [verilated(package, header, options)]
         command += ["--coverage"] * options.coverage + ["--every-cycle"] * options.every_cycle
-        command += ["--fault", str(options.fault)] if options.fault else []
-        done = run(command, log=True, input="".join(lines))
-        print(done.stdout, end="")
-        if done.returncode not in (0, 2):
-            raise Failed(f"rtl_replay: code {done.returncode}")
-        code = max(code, done.returncode)
+        for fault in options.fault or [0]:
+            if fault:
+                print(f"fault {fault}")
+            done = run(command + ["--fault", str(fault)], log=True, input="".join(lines))
+            print(done.stdout, end="")
+            if done.returncode not in (0, 2):
+                raise Failed(f"rtl_replay: code {done.returncode}")
+            code = max(code, done.returncode)
     return code
 
 

@@ -65,6 +65,7 @@ void Coverage::sample(VerilatedCell& cell) {
     if (untested >= 2) count("two rays wait for a test");
     if (untested > 2) count("more rays than free units");
     if (top.pixel_valid) count("pixel complete");
+    if (top.again) count("ray is tested again outside the cube");
     if (!top.asks) return;
     int going = 0;
     const auto goal = [&](int r) { return int(top.goal >> (3 * r) & 7); };
@@ -93,7 +94,6 @@ void Coverage::sample(VerilatedCell& cell) {
             count_way(r, goal(r), !answer && (top.ends >> (r - sides) & 1));
     }
     if (top.silent) count("ray ends without an answer");
-    if (top.again) count("ray is tested again outside the cube");
     if (top.postponed) count("own ray postponed");
     if (going >= 2) count("two leave in one cycle");
 }
