@@ -24,7 +24,7 @@ class Failed(Exception):
 
 
 def sources():
-    folder = os.path.join(HERE, "sv")
+    folder = os.path.join(HERE, "sv", "cell")
     units = sorted(name for name in os.listdir(folder) if name.endswith(".sv") and name not in PACKAGES)
     return [os.path.join(folder, name) for name in ["waivers.vlt"] + PACKAGES + units]
 

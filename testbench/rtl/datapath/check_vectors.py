@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-UNITS = os.path.join(os.path.dirname(HERE), "sv")
+UNITS = os.path.join(os.path.dirname(HERE), "sv", "datapath")
 FAULTS = {
     1: "never rounds to the nearest",
     2: "rounds ties up, not to even",
