@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Replays golden vectors with the SystemVerilog cell, verilated.
 
     testbench/rtl/replay.py [--kit build/rtl_kit] [--work build/rtl] RECORD.txt ...

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The SystemVerilog cell against golden vectors: rtl_test.py scenarios|runs|faults SOURCE BUILD
 
 `scenarios`: those of cell_tb that need no voxels. `runs`: cells of real runs in which no voxel lies. `faults`: errors that
