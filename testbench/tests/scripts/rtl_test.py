@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""The SystemVerilog cell against golden vectors: rtl_test.py scenarios|runs|faults SOURCE BUILD
+"""The SystemVerilog cell against golden vectors: rtl_test.py scenarios|runs|contended|faults SOURCE BUILD
 
-`scenarios`: those of cell_tb that need no voxels. `runs`: cells of real runs in which no voxel lies. `faults`: errors that
+`scenarios`: those of cell_tb that need no voxels. `runs`: cells of real runs in which no voxel lies. `contended`: such cells where
+buffers of one message and narrow links make rays wait for each other. `faults`: errors that
 are put into the cell on purpose are found by the vectors, and named by cycle and field."""
 import pathlib
 import re
@@ -11,18 +12,25 @@ import sys
 
 WHEN = r"cycle \d+: .*(field '|expected in cycle|it did not do)"
 # Number in raycell_numbers.sv: its name, the records that find it, what the first difference has to say. Of the errors that are
-# not here (order by age, turns, leaving just at a face, back-off) these records tell nothing.
+# not here (leaving just at a face, back-off) these records tell nothing.
 FAULTS = {
     1: ("rounding", "runs", r"cycle \d+: out .* field '"),
     2: ("tie", "runs", WHEN),
     3: ("credit", "scenarios", WHEN),
     4: ("age", "scenarios", WHEN),
+    5: ("order by age", "contended", WHEN),
+    6: ("turn", "contended", WHEN),
     7: ("route", "scenarios", WHEN),
     9: ("wires", "runs", WHEN),
 }
 # Of other machines, which would take a verilated cell each.
 OTHER_MACHINES = ("back_outside", "front_outside", "busy_wires", "two_units")
-LEAST = {"scenarios": 20, "runs": 40}
+LEAST = {"scenarios": 20, "runs": 40, "contended": 100}
+RUNS = {
+    "runs": ["facing_mirrors.nff", "--golden", "0..23,0..1", "--golden", "0..23,21..23"],
+    "contended": ["still_life.nff", "--golden", "0..23,4..13", "--hit", "depth", "--viewer", "infinity", "--buffer", "1", "--link-bits", "4",
+                  "--traversal-units", "1", "--ray-store", "5"],
+}
 
 
 def call(*command):
@@ -36,8 +44,8 @@ def records_of(case, source, build, folder):
     if case == "scenarios":
         code, text = call(build / "cell_tb", "--write", f"{folder}/")
     else:
-        code, text = call(build / "raycell", "render", source / "scenes/facing_mirrors.nff", "--cells", "24x24",
-                          "--quiet", "--golden", "0..23,0..1", "--golden", "0..23,21..23", "-o", folder / "run")
+        scene, *options = RUNS[case]
+        code, text = call(build / "raycell", "render", source / "scenes" / scene, "--cells", "24x24", "--quiet", "-o", folder / "run", *options)
     if code != 0:
         sys.exit(f"recording: code {code}\n{text}")
     return sorted(path for path in folder.glob("*.txt") if path.stem not in OTHER_MACHINES)
