@@ -111,6 +111,23 @@ TEST(Samples, ComeNearerToTheConvergedTruthTheMoreThereAre) {
     }
 }
 
+TEST(Samples, OfATentAreMetByTheTruthOfATentAndNotOfABox) {
+    PictureSettings settings = sampled(16);
+    settings.width = settings.height = 24;
+    settings.filter = PixelFilter::tent;
+    const auto placed = place_own_scene("still_life", settings);
+    const Picture picture = UntimedMachine(placed->scene, settings, placed->exterior.get()).render();
+    const auto psnr = [&](PixelFilter filter) {
+        PictureSettings other = settings;
+        other.filter = filter;
+        const double db =
+            compare(picture, TruthRenderer(placed->scene, truth_settings(other, 256)).render()).psnr_db;
+        std::cout << (filter == PixelFilter::tent ? "tent" : "box") << ": " << db << " dB\n";
+        return db;
+    };
+    EXPECT_GT(psnr(PixelFilter::tent), psnr(PixelFilter::box) + 3);
+}
+
 TEST(Samples, OfALoadedSceneAreAddedUpToo) {
     expect_first_elaboration();
     PictureSettings settings = sampled(4);
