@@ -39,6 +39,8 @@ Picture expect_one_picture(const PictureSettings& settings, const char* scene) {
         }
         EXPECT_EQ(result.counters.rays.primary, sent);
         EXPECT_GT(machine->longest_tree().cycles, 0u);
+        EXPECT_EQ(machine->environment().meters.counters.pixels_done, untimed.pixels.size() + 16)
+            << "the pixels traced once more are complete again, with all their samples";
     }
     return untimed;
 }
