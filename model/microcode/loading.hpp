@@ -40,6 +40,8 @@ class LoadingWriter {
     void take_run();
     /// Levels and ends of the run from "z low" to "z high".
     void run(bool with_room);
+    /// Another piece joins a voxel: run, point, how far what counts from the run's beginning moves.
+    void join();
     /// The edges that cross the run: rung `edge` holds them, rung `mask` only needs to know which.
     void cross(HitTest rung);
     void take_edges();
@@ -90,6 +92,7 @@ class LoadingWriter {
     void add_bounds();
     void measure();
     void level_of(const std::string& name, RegisterIndex depth, RegisterIndex level);
+    void ends();
     int far_bits() const;
     void convert(RegisterIndex target, RegisterIndex a);
     void largest(const std::vector<RegisterIndex>& of, RegisterIndex size, RegisterIndex other);

@@ -33,10 +33,6 @@ void LoadingWriter::run(bool with_room) {
     const int unit = formats_.unit.fraction_bits();
     const int fraction = std::max({f_, unit, level_fraction});
     const int bits = loading_ + 4 + fraction - f_;
-    const RegisterIndex level = a_.constant("level", std::int64_t(scale_by(levels_.level, level_fraction)),
-                                            field::level_mantissa + 1, level_fraction);
-    const RegisterIndex step = a_.constant("a bit", 1, 2, formats_.depth.fraction_bits());
-    const RegisterIndex least = a_.reg("least far", far_bits(), formats_.depth.fraction_bits());
     const auto depth_constant = [&](const std::string& name, double value) {
         return a_.constant(name, std::int64_t(scale_by(value, fraction)), bits, fraction);
     };
@@ -61,6 +57,16 @@ void LoadingWriter::run(bool with_room) {
     level_of("near of", low, near_level_);
     level_of("far of", high, far_level_);
     a_.add(far_level_, far_level_, one_);
+    ends();
+}
+
+/// The run's ends from its levels. Levels may be finer than a depth's last bit, but a run is never empty.
+void LoadingWriter::ends() {
+    const int fraction = field::level_mantissa - 1 - exponent_of(levels_.level);
+    const RegisterIndex level = a_.constant("level", std::int64_t(scale_by(levels_.level, fraction)),
+                                            field::level_mantissa + 1, fraction);
+    const RegisterIndex step = a_.constant("a bit", 1, 2, formats_.depth.fraction_bits());
+    const RegisterIndex least = a_.reg("least far", far_bits(), formats_.depth.fraction_bits());
     a_.sum(near_, Assembler::none, {{level, near_level_}});
     a_.sum(far_, Assembler::none, {{level, far_level_}});
     a_.add(least, near_, step);

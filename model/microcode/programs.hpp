@@ -221,7 +221,46 @@ MicroProgram normal_of_voxel_program(const MicroSetting& setting, Normals normal
 MicroProgram voxel_program(const MicroSetting& setting, const DepthLevels& levels, HitTest rung,
                            Normals normals);
 
+// What else a cell computes for its voxels; the cost table has no entries for these.
+
+/// Another piece of a polygon joins its voxel, but for plane, normals and edges. In: "near level", "far
+/// level", near, "point u", "point v", "twice area", "drop z" (the voxel's), the first five of the piece with
+/// "piece" before ("piece near level"), "piece area". Out: "near level", "far level", near, far, "point u",
+/// "point v", "anchor v", "twice area", way and "piece way" (how far the beginning of the voxel's run, and of
+/// the piece's, moved).
+MicroProgram join_program(const MicroSetting& setting, const DepthLevels& levels);
+
+/// A plane's normal from its slopes. In: "plane u", "plane v", negative, "drop x", "drop z". Out: nx to nz.
+MicroProgram components_program(const MicroSetting& setting);
+
+/// An edge's offset when the beginning of its run moves along v. In: b, c, way. Out: c.
+MicroProgram move_edge_program(const MicroSetting& setting);
+
+/// The largest far up to a line of the index table. In: most, far. Out: most.
+MicroProgram widen_program(const MicroSetting& setting);
+
+/// The power of a highlight as the shading reads it (Operators::exponent_word). In: exponent, fraction (as
+/// the features carry it). Out: shine.
+MicroProgram shine_program(const MicroSetting& setting);
+
+/// A source's place with an exponent that all coordinates of the array have room in
+/// (Formats::place_exponent). In and out: sx to sz, exponent.
+MicroProgram source_place_program(const MicroSetting& setting);
+
 /// combine_intensity() of one channel. In: local, mirror, transmit, reflected, refracted. Out: sum.
 MicroProgram combine_program(const MicroSetting& setting);
+
+// What the shading unit computes besides; the cost table has no entries for these.
+
+/// Where a hit is in its voxel's projection: before its setup, which needs the normal there. In: x to z, dx
+/// to dz, t, base, "drop x", "drop z". Out: u, v (as `normal` takes them).
+MicroProgram place_program(const MicroSetting& setting);
+
+/// combine_intensity() of all channels. In: mirror, transmit, "local x" to "local z", "reflected x" and so
+/// on, "refracted x" and so on. Out: "sum x" to "sum z".
+MicroProgram total_program(const MicroSetting& setting);
+
+/// No instruction: for calls that only copy.
+MicroProgram nothing_program(const MicroSetting& setting);
 
 }  // namespace raycell

@@ -123,13 +123,31 @@ void MicroImage::measure() {
         }
     }
     accumulator_bits_ = int(std::floor(std::log2l(most))) + 2;
+    address_bits_ = address_bits(registers_);
+    place_bits_ = address_bits(instructions_);
+    line_address_bits_ = address_bits(lines_.size());
+    for (const MicroTable::Line& line : lines_)
+        line_bits_ = std::max({line_bits_, signed_bits(line.start), signed_bits(line.rise)});
+}
+
+void MicroImage::share(const std::vector<MicroImage*>& images) {
+    for (int MicroImage::*width :
+         {&MicroImage::register_bits_, &MicroImage::number_bits_, &MicroImage::part_bits_,
+          &MicroImage::shift_bits_, &MicroImage::address_bits_, &MicroImage::place_bits_,
+          &MicroImage::line_address_bits_, &MicroImage::line_bits_}) {
+        int most = 0;
+        for (const MicroImage* image : images) most = std::max(most, image->*width);
+        for (MicroImage* image : images) image->*width = most;
+    }
+    for (MicroImage* image : images) image->lay_out();
 }
 
 void MicroImage::lay_out() {
-    const int reg = address_bits(registers_);
-    const int place = address_bits(instructions_);
-    const int extra = std::max(bits_for(register_bits_ + 1), address_bits(lines_.size()));
+    const int reg = address_bits_;
+    const int place = place_bits_;
+    const int extra = std::max(bits_for(register_bits_ + 1), line_address_bits_);
     int low = 0;
+    fields_.clear();
     for (const auto& [name, bits] :
          std::vector<std::pair<const char*, int>>{{"OPERATION", bits_for(std::int64_t(operations.size()))},
                                                   {"TARGET", std::max(reg, place)},
@@ -147,13 +165,6 @@ void MicroImage::lay_out() {
         fields_.push_back({name, low, bits});
         low += bits;
     }
-}
-
-int MicroImage::line_bits() const {
-    int bits = 1;
-    for (const MicroTable::Line& line : lines_)
-        bits = std::max({bits, signed_bits(line.start), signed_bits(line.rise)});
-    return bits;
 }
 
 std::string MicroImage::hexadecimal(Value value, int bits) {
@@ -231,6 +242,14 @@ std::string MicroImage::table_file() const {
     return lines_.empty() ? hexadecimal(0, 2 * line_bits()) + "\n" : text;
 }
 
+std::string MicroImage::register_file() const {
+    std::string text;
+    for (std::size_t p = 0; p < programs_.size(); ++p) {
+        for (const std::int64_t value : initial_values(p)) text += hexadecimal(value, register_bits_) + "\n";
+    }
+    return text;
+}
+
 std::vector<std::int64_t> MicroImage::initial_values(std::size_t program) const {
     std::vector<std::int64_t> values(programs_[program]->registers.size(), 0);
     for (const MicroInstruction& i : programs_[program]->instructions) {
@@ -252,12 +271,12 @@ std::string MicroImage::package() const {
     number("REGISTER_BITS", std::size_t(register_bits_));
     number("ACCUMULATOR_BITS", std::size_t(accumulator_bits_));
     number("REGISTERS", registers_);
-    number("REGISTER_ADDRESS_BITS", std::size_t(address_bits(registers_)));
+    number("REGISTER_ADDRESS_BITS", std::size_t(address_bits_));
     number("INSTRUCTIONS", instructions_);
-    number("INSTRUCTION_ADDRESS_BITS", std::size_t(address_bits(instructions_)));
+    number("INSTRUCTION_ADDRESS_BITS", std::size_t(place_bits_));
     number("INSTRUCTION_BITS", std::size_t(instruction_bits()));
     number("LINES", std::max<std::size_t>(lines_.size(), 1));
-    number("LINE_ADDRESS_BITS", std::size_t(address_bits(lines_.size())));
+    number("LINE_ADDRESS_BITS", std::size_t(line_address_bits_));
     number("LINE_BITS", std::size_t(line_bits()));
     number("NUMBER_BITS", std::size_t(number_bits_));
     for (const Field& field : fields_) {

@@ -17,6 +17,10 @@ class MicroImage {
     /// programs must outlive it. Throws std::invalid_argument for a datapath of several multipliers.
     MicroImage(std::vector<const MicroProgram*> programs, bool apart);
 
+    /// Makes every width, of instructions, registers and tables, that of the widest of some images, so that
+    /// one package has the encoding of all: units with memories of their own in one design.
+    static void share(const std::vector<MicroImage*>& images);
+
     /// Bits of an instruction, from `low` on.
     struct Field {
         std::string name;
@@ -35,14 +39,17 @@ class MicroImage {
     int register_bits() const { return register_bits_; }        ///< of the widest register
     int accumulator_bits() const { return accumulator_bits_; }  ///< enough for every value of the registers
     std::size_t instruction_count() const { return instructions_; }
+    int entry_bits() const { return place_bits_; }  ///< of an instruction's place
     std::size_t table_lines() const { return lines_.size(); }
-    int line_bits() const;  ///< of each of a line's two words
+    int line_bits() const { return line_bits_; }  ///< of each of a line's two words
 
     /// A SystemVerilog package: the encoding and all widths.
     std::string package() const;
     /// Files for $readmemh: a word a line.
     std::string instruction_file() const;
     std::string table_file() const;
+    /// What all registers hold at the beginning, of programs that are apart.
+    std::string register_file() const;
     /// What the registers of a program hold at the beginning.
     std::vector<std::int64_t> initial_values(std::size_t program) const;
     /// A register's value as hexadecimal digits, all `bits` bits of it.
@@ -69,7 +76,11 @@ class MicroImage {
     int accumulator_bits_ = 1;
     int number_bits_ = 1;  ///< of registers that say how far to shift
     int part_bits_ = 1;
-    int shift_bits_ = 1;  ///< two's complement
+    int shift_bits_ = 1;    ///< two's complement
+    int address_bits_ = 1;  ///< of a register's number
+    int place_bits_ = 1;    ///< of an instruction's
+    int line_address_bits_ = 1;
+    int line_bits_ = 1;
 };
 
 /// A name without blanks, for files and fields.

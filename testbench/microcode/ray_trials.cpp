@@ -108,6 +108,37 @@ class SetupTrial : public MicroTrial {
     double t_ = 0;
 };
 
+class PlaceTrial : public MicroTrial {
+  public:
+    explicit PlaceTrial(const MicroSetting& s) : MicroTrial(s, place_program(s), {""}), stage_(s) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        const Formats& f = arithmetic_.formats();
+        ray_.position = stage_.draw_point(random);
+        ray_.direction = any_direction(random, arithmetic_);
+        t_ = random.word(f.distance, 0, 2);
+        base_ = random.word(f.depth, 0, stage_.context.depth);
+        drop_ = random.chance(0.33) ? 0 : random.chance(0.5) ? 1 : 2;
+        put("", ray_.position);
+        put("d", ray_.direction);
+        put("t", t_);
+        put("base", base_);
+        put("drop x", drop_ == 0 ? 1 : 0);
+        put("drop z", drop_ == 2 ? 1 : 0);
+    }
+    void compare() override {
+        const dvec3 p = point_at(ray_, t_, arithmetic_);
+        const dvec2 uv = project({p.x, p.y, p.z - base_}, std::uint8_t(drop_));
+        expect("u", take("u"), uv.x);
+        expect("v", take("v"), uv.y);
+    }
+    Stage stage_;
+    Ray ray_;
+    double t_ = 0, base_ = 0;
+    int drop_ = 0;
+};
+
 class SourceTrial : public MicroTrial {
   public:
     explicit SourceTrial(const MicroSetting& s)
@@ -228,6 +259,7 @@ class RouteTrial : public MicroTrial {
 TrialList ray_trials(const MicroSetting& s) {
     TrialList all;
     all.push_back(std::make_unique<SetupTrial>(s));
+    all.push_back(std::make_unique<PlaceTrial>(s));
     all.push_back(std::make_unique<SourceTrial>(s));
     all.push_back(std::make_unique<StartTrial>(s));
     all.push_back(std::make_unique<RouteTrial>(s));

@@ -242,6 +242,31 @@ class CombineTrial : public MicroTrial {
     double local_ = 0, mirror_ = 0, transmit_ = 0, reflected_ = 0, refracted_ = 0;
 };
 
+class TotalTrial : public MicroTrial {
+  public:
+    TotalTrial(const MicroSetting& s) : MicroTrial(s, total_program(s), {""}) {}
+
+  private:
+    void draw(MicroRandom& random) override {
+        const Formats& f = arithmetic_.formats();
+        material_.specular = random.word(f.feature, 0, 1);
+        material_.transmit = random.word(f.feature, 0, 1);
+        for (dvec3* colour : {&local_, &reflected_, &refracted_}) {
+            for (int i = 0; i < 3; ++i) (*colour)[i] = random.word(f.intensity, 0, f.intensity.most());
+        }
+        put("mirror", material_.specular);
+        put("transmit", material_.transmit);
+        put("local ", local_);
+        put("reflected ", reflected_);
+        put("refracted ", refracted_);
+    }
+    void compare() override {
+        expect("sum ", combine_intensity(local_, material_, reflected_, refracted_, arithmetic_));
+    }
+    Material material_;
+    dvec3 local_{0, 0, 0}, reflected_{0, 0, 0}, refracted_{0, 0, 0};
+};
+
 }  // namespace
 
 TrialList shading_trials(const MicroSetting& s) {
@@ -256,6 +281,7 @@ TrialList shading_trials(const MicroSetting& s) {
     all.push_back(std::make_unique<AmbientTrial>(s));
     all.push_back(std::make_unique<LightTrial>(s));
     all.push_back(std::make_unique<CombineTrial>(s));
+    all.push_back(std::make_unique<TotalTrial>(s));
     return all;
 }
 

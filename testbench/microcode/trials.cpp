@@ -102,7 +102,7 @@ dvec3 any_direction(MicroRandom& random, const Arithmetic& arithmetic) {
 
 std::vector<std::unique_ptr<MicroTrial>> micro_trials(const MicroSetting& s) {
     TrialList all = traversal_trials(s);
-    for (const auto make : {ray_trials, shading_trials, source_trials, loading_trials}) {
+    for (const auto make : {ray_trials, shading_trials, source_trials, loading_trials, joining_trials}) {
         for (auto& trial : make(s)) all.push_back(std::move(trial));
     }
     return all;
