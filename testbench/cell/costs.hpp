@@ -33,10 +33,10 @@ constexpr Cycle load_advance = 1;
 constexpr Cycle load_forward = 1;
 constexpr Cycle backoff = 64;
 
-/// What a back-off lasts: the shortest, doubled with each attempt, and a jitter below that, which is a hash
-/// of the seed (1), the ray's id and the attempt.
+/// What a back-off lasts: the shortest, doubled with each attempt up to 64 times, and a jitter below that,
+/// which is a hash of the seed (1), the ray's id and the attempt.
 constexpr Cycle back_off(std::uint64_t ray, unsigned attempt) {
-    const Cycle base = backoff << attempt;
+    const Cycle base = backoff << (attempt < 6 ? attempt : 6);
     std::uint64_t h = 0x9e3779b97f4a7c15 ^ ray * 0xbf58476d1ce4e5b9 ^ attempt * 0x94d049bb133111eb;
     h = (h ^ h >> 31U) * 0x7fb5d329728ea185;
     return base + (h ^ h >> 27U) % base;

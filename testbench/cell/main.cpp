@@ -4,6 +4,7 @@
 #include <systemc>
 
 #include "cells/probes/probe.hpp"
+#include "testbench/cell/loading_export.hpp"
 #include "testbench/cell/record.hpp"
 #include "testbench/cell/scenarios.hpp"
 #include "testbench/cell/traversal_export.hpp"
@@ -29,6 +30,7 @@ struct Options {
     std::string vcd;
     std::string write;
     std::string folder;
+    bool shading = false;
     bool list = false;
     bool quiet = false;
 };
@@ -97,8 +99,13 @@ Chosen recorded(const Options& options) {
 void check(const Options& options, std::size_t scenarios, std::size_t traversals) {
     if (!options.replay.empty() && (!options.names.empty() || options.list || !options.write.empty()))
         throw UsageError("--replay: expected no scenario, --list or --write beside it");
-    if (!options.folder.empty() && (scenarios > 0 || traversals == 0 || !options.vcd.empty()))
-        throw UsageError("--hardware: expected records of traversal units alone to --replay, and no --vcd");
+    if (!options.folder.empty() &&
+        (options.replay.empty() || (scenarios > 0 && traversals > 0) || !options.vcd.empty()))
+        throw UsageError(
+            "--hardware: expected records of traversal units alone, or of cells alone, to --replay, and no "
+            "--vcd");
+    if (options.shading && options.folder.empty())
+        throw UsageError("--shading: expected --hardware beside it");
     if ((scenarios != 1 || traversals > 0) && !options.vcd.empty())
         throw UsageError("--vcd: it shows one cell; expected one scenario or one file to replay");
     if (scenarios != 1 && !options.write.empty() && !is_folder(options.write))
@@ -166,17 +173,27 @@ std::size_t run_cells(const Options& options, const std::vector<Scenario>& scena
     return failed;
 }
 
+/// The files of traversal units or, from records of cells, of loading.
+std::string export_hardware(const Chosen& chosen, const std::string& folder, bool shading) {
+    if (chosen.scenarios.empty()) {
+        std::vector<TraversalRecord> records;
+        for (const Record& record : chosen.traversals) records.push_back({&record.file, &record.setup});
+        return export_traversal(records, folder, shading);
+    }
+    std::vector<LoadRecord> records;
+    for (const Scenario& cell : chosen.scenarios) records.push_back({cell.name, &cell.setup, &cell.events});
+    return export_loading(records, folder);
+}
+
 int run(const Options& options) {
     const Chosen chosen = options.replay.empty() ? Chosen{chosen_scenarios(options), {}} : recorded(options);
     const std::vector<Scenario>& scenarios = chosen.scenarios;
     check(options, scenarios.size(), chosen.traversals.size());
     if (!options.folder.empty()) {
-        std::vector<TraversalRecord> records;
-        for (const Record& record : chosen.traversals) records.push_back({&record.file, &record.setup});
         try {
-            std::cout << export_traversal(records, options.folder);
+            std::cout << export_hardware(chosen, options.folder, options.shading);
         } catch (const std::invalid_argument& error) {
-            throw UsageError(records.front().file->name + ": " + error.what());
+            throw UsageError(options.replay.front() + ": " + error.what());
         }
         return exit_done;
     }
@@ -218,10 +235,13 @@ int run(int argc, char** argv) {
            "write a scenario as golden vectors instead of running it; several, or all, into a folder: a name "
            "that ends in /")
         ->type_name("FILE|FOLDER/");
-    app.add_option(
-           "--hardware", options.folder,
-           "write the records of one run's traversal units for traversal.sv: microprograms, voxels, rays")
+    app.add_option("--hardware", options.folder,
+                   "write the records of one run's traversal units for traversal.sv: microprograms, voxels, "
+                   "rays; those of "
+                   "its cells for loading.sv: microprograms, load messages")
         ->type_name("FOLDER");
+    app.add_flag("--shading", options.shading,
+                 "with --hardware: also the shading unit's programs, and jobs for the hits among the rays");
     app.add_flag("--quiet", options.quiet, "print nothing but failures");
     return parse_and_run(app, {argv + 1, argv + argc}, [&] { return run(options); });
 }

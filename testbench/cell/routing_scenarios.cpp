@@ -123,6 +123,23 @@ void add_exits(std::vector<Scenario>& all) {
     }
 }
 
+/// A ray whose z at the side is exactly that of a face of the cube: it does not leave.
+void add_reached_faces(std::vector<Scenario>& all) {
+    for (const bool back : {false, true}) {
+        // From (0.5, 0.5) it meets x = 1 at t = 1, y = 0.75, where z is dz further.
+        const double dz = ray_of(RayKind::reflected, {}, {0.5, 0.25, back ? 0.829 : -0.829}).direction.z;
+        const double z = back ? 10 : 0;
+        const Ray ray = ray_of(RayKind::reflected, {0.5, 0.5, z - dz}, {0.5, 0.25, dz});
+        const std::string face = back ? "back" : "front";
+        Script script = empty_cell(face + "_reached", "a ray that just reaches the " + face +
+                                                          " where it meets a side goes on over the side");
+        script.in(sent, Side::north, east_bound, ray_link, ray)
+            .take(tested, Side::north, east_bound)
+            .out(tested, Side::east, east_bound, ray_link, moved_to(ray, {0, 0.75, z}));
+        all.push_back(script.until(sent + 1000));
+    }
+}
+
 void add_answers(std::vector<Scenario>& all) {
     Ray far = ray_of(RayKind::reflected, {0, 0.5, 5}, {1, 0, 0});
     far.home_x = 2;
@@ -166,6 +183,7 @@ std::vector<Scenario> routing_scenarios() {
     add_rays(all);
     add_ends(all);
     add_exits(all);
+    add_reached_faces(all);
     add_answers(all);
     return all;
 }

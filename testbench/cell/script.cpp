@@ -76,6 +76,10 @@ Script& Script::free(Cycle cycle, Side towards, int index) {
 
 Script& Script::trace(Cycle first) { return add(GoldenEvent::What::phase, first, Side::east, 0, 0, "trace"); }
 
+Script& Script::drain(Cycle cycle, bool on) {
+    return add(GoldenEvent::What::drain, cycle, Side::east, 0, 0, on ? "1" : "0");
+}
+
 Script& Script::take(Cycle cycle, Side from, int index) {
     return add(GoldenEvent::What::take, cycle, from, index, 0, "");
 }

@@ -28,6 +28,7 @@ class Script {
     Script& in(Cycle cycle, Side from, int cycles, const LoadItem& item);
     Script& free(Cycle cycle, Side towards, int index);
     Script& trace(Cycle first);
+    Script& drain(Cycle cycle, bool on);  ///< new rays are held back, or not any more
 
     // What it has to do.
     Script& take(Cycle cycle, Side from, int index);

@@ -1,11 +1,14 @@
 #include "testbench/cell/traversal_export.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
+#include "testbench/cell/hardware_text.hpp"
+#include "testbench/cell/shading_export.hpp"
 #include "testbench/cell/visit_calls.hpp"
+#include "testbench/cell/visit_files.hpp"
 #include "testbench/common/new_file.hpp"
 
 namespace raycell {
@@ -241,92 +244,10 @@ void check(const MicroVisit& micro, const MicroVisit::Result& result, const Visi
     if (!std::isinf(moved.reach)) same("next reach", moved.reach);
 }
 
-/// All programs in one memory, with registers of their own.
-MicroImage image_of(const VisitCalls& calls) {
-    std::vector<const MicroProgram*> programs;
-    for (const auto& program : calls.programs()) programs.push_back(program.get());
-    return MicroImage(programs, true);
-}
-
-/// A name as SystemVerilog's constants have it.
-std::string constant_name(std::string name) {
-    name = name_in_file(name);
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return char(std::toupper(c)); });
-    return name;
-}
-
-int bits_of(std::size_t count) {
-    int bits = 1;
-    while ((std::size_t(1) << bits) < count) ++bits;
-    return bits;
-}
-
-/// The sequences of copies and calls, for $readmemh, and the package that names them.
-struct CallFiles {
-    std::string copies, calls, package;
-};
-
-CallFiles call_files(const VisitCalls& v, const MicroImage& image, std::size_t store_words, bool edges) {
-    const int address = std::max(bits_of(image.register_count()), bits_of(v.fields().size()));
-    const int source = std::max({bits_of(v.fields().size()), bits_of(v.voxel_fields().size()),
-                                 bits_of(v.edge_fields().size() + 1), bits_of(image.register_count())});
-    const int entry = bits_of(image.instruction_count());
-    std::size_t copies = 0;
-    for (const VisitCall& c : v.calls()) copies += c.loads.size() + c.stores.size();
-    const int copy = bits_of(copies + 1);
-    CallFiles files;
-    std::size_t at = 0;
-    // From: 0 a field, 1 a voxel, 2 an edge, 3 a register. To: 0 a register, 1 a field.
-    const auto add_copy = [&](unsigned from, std::size_t number, bool to_field, std::size_t to) {
-        const Word word = Word(from) << (source + 1 + address) | Word(number) << (1 + address) |
-                          Word(to_field) << address | Word(to);
-        files.copies += MicroImage::hexadecimal(word, 2 + source + 1 + address) + "\n";
-        ++at;
-    };
-    for (const VisitCall& c : v.calls()) {
-        const RegisterIndex base = image.first_register(c.program);
-        const std::size_t first = at;
-        for (const Transfer& t : c.loads)
-            add_copy(unsigned(t.space), t.from, t.to_field, t.to_field ? t.to : base + t.to);
-        const std::size_t middle = at;
-        for (const auto& [from, to] : c.stores) add_copy(3, base + from, true, to);
-        const Word word =
-            ((Word(first) << copy | Word(middle)) << copy | Word(at)) << entry | Word(image.entry(c.program));
-        files.calls += "// " + c.name + "\n" + MicroImage::hexadecimal(word, 3 * copy + entry) + "\n";
-    }
-    std::ostringstream text;
-    text << "// Written by cell_tb: fields, calls and copies of the traversal unit.\npackage visit;\n"
-            "  // verilator lint_off UNUSEDPARAM\n";
-    const auto number = [&](const std::string& name, std::size_t value) {
-        text << "  localparam int " << name << " = " << value << ";\n";
-    };
-    number("FIELDS", v.fields().size());
-    number("FIELD_BITS", std::size_t(bits_of(v.fields().size())));
-    number("STORE_WORDS", std::max<std::size_t>(store_words, 1));
-    number("STORE_BITS", std::size_t(bits_of(store_words + 1)));
-    number("VOXEL_WORDS", v.voxel_fields().size());
-    number("EDGE_WORDS", v.edge_fields().size() + 1);
-    number("HAS_EDGES", edges);
-    number("SOURCE_BITS", std::size_t(source));
-    number("TO_BITS", std::size_t(address));
-    number("COPIES", copies);
-    number("COPY_BITS", std::size_t(copy));
-    number("CALLS", v.calls().size());
-    number("CALL_BITS", std::size_t(bits_of(v.calls().size())));
-    for (std::size_t i = 0; i < v.fields().size(); ++i) number("F_" + constant_name(v.fields()[i]), i);
-    for (std::size_t i = 0; i < v.calls().size(); ++i) number("CALL_" + constant_name(v.calls()[i].name), i);
-    if (!edges) {  // named, not used
-        for (const char* name : {"F_EDGES", "F_FIRST", "F_INSIDE", "CALL_PROJECTION", "CALL_EDGE"})
-            number(name, 0);
-    }
-    files.package = text.str() + "endpackage\n";
-    return files;
-}
-
 }  // namespace
 
-std::string export_traversal(const std::vector<TraversalRecord>& records, const std::string& folder) {
+std::string export_traversal(const std::vector<TraversalRecord>& records, const std::string& folder,
+                             bool with_shading) {
     OutputSet files(folder + "/");
     std::string packages, index;
     std::size_t most_words = 0, rays = 0, voxels = 0;
@@ -335,10 +256,19 @@ std::string export_traversal(const std::vector<TraversalRecord>& records, const 
         std::string store, vectors;
     };
     std::vector<Recorded> cells;
+    std::optional<ShadingExport> shading;
+    if (with_shading) {
+        const CellSetup& first = *records.front().setup;
+        shading.emplace(first.scene, first.picture, first.machine);
+    }
+    const auto share = [&](MicroImage& image) {
+        if (shading) MicroImage::share({&image, &shading->image()});
+    };
     for (const TraversalRecord& record : records) {
         const Context context(record.setup->scene, record.setup->picture);
         const VisitCalls calls(context);
-        const MicroImage image = image_of(calls);
+        MicroImage image = image_of(calls);
+        share(image);
         if (packages.empty()) packages = image.package() + image.instruction_file();
         if (packages != image.package() + image.instruction_file())
             throw GoldenError(record.file->name + ": its microprograms differ from those of " +
@@ -352,7 +282,12 @@ std::string export_traversal(const std::vector<TraversalRecord>& records, const 
         const TraversalReplay replay = replay_traversal(
             *record.file, *record.setup, 1,
             [&](const TraversalSetting& setting, const Ray& ray, const Visit& visit) {
-                if (tests++ == 0) micro.take(setting.store);
+                if (tests++ == 0) {
+                    micro.take(setting.store);
+                    if (shading) shading->cell(setting.store, setting.x, setting.y);
+                }
+                if (shading && visit.event == Visit::Event::hit && !is_shadow(ray.kind))
+                    shading->hit(ray, visit.hit);
                 micro.take(ray);
                 for (const Word word : micro.words()) add(word);
                 add(Word(micro.shadow()) << 2 | Word(micro.finite()) << 1 | Word(micro.outside()));
@@ -369,6 +304,7 @@ std::string export_traversal(const std::vector<TraversalRecord>& records, const 
                 copies += result.copies;
                 table += visit_cycles(visit, record.setup->picture, record.setup->machine.costs);
             });
+        if (shading) shading->finish();
         if (!replay.failures.empty()) throw GoldenError(record.file->name + ": " + replay.failures.front());
         for (const Word word : micro.store())
             cell.store += MicroImage::hexadecimal(word, image.register_bits()) + "\n";
@@ -382,26 +318,26 @@ std::string export_traversal(const std::vector<TraversalRecord>& records, const 
     const CellSetup& setup = *records.front().setup;
     const Context context(setup.scene, setup.picture);
     const VisitCalls calls(context);
-    const MicroImage image = image_of(calls);
-    std::string registers, names;
-    for (std::size_t p = 0; p < image.programs().size(); ++p) {
-        for (const std::int64_t value : image.initial_values(p))
-            registers += MicroImage::hexadecimal(value, image.register_bits()) + "\n";
-    }
+    MicroImage image = image_of(calls);
+    share(image);
+    std::string names;
     for (const std::string& name : calls.fields()) names += name_in_file(name) + "\n";
-    const CallFiles lists = call_files(calls, image, most_words, setup.picture.hit == HitTest::edge);
+    const VisitFiles lists = visit_files(calls, image, most_words, setup.picture.hit == HitTest::edge);
     std::vector<std::pair<std::string, std::string>> all = {{"microcode.sv", image.package()},
                                                             {"visit.sv", lists.package},
                                                             {"programs.hex", image.instruction_file()},
                                                             {"tables.hex", image.table_file()},
                                                             {"copies.hex", lists.copies},
                                                             {"calls.hex", lists.calls},
-                                                            {"registers.hex", registers},
+                                                            {"registers.hex", image.register_file()},
                                                             {"fields.txt", names},
                                                             {"visits.txt", index}};
     for (std::size_t i = 0; i < cells.size(); ++i) {
         all.emplace_back("store_" + std::to_string(i) + ".hex", std::move(cells[i].store));
         all.emplace_back("visits_" + std::to_string(i) + ".hex", std::move(cells[i].vectors));
+    }
+    if (shading) {
+        for (auto& file : shading->files()) all.push_back(std::move(file));
     }
     std::vector<std::string> suffixes;
     for (const auto& [name, text] : all) suffixes.push_back(name);
@@ -413,6 +349,7 @@ std::string export_traversal(const std::vector<TraversalRecord>& records, const 
          << " rays; the programs take " << cycles << " cycles, " << charged
          << " of them of programs in the cost table, which says " << table << ", and " << copies
          << " copies\n";
+    if (shading) said << folder << ": " << shading->said();
     return said.str();
 }
 

@@ -15,7 +15,10 @@ struct TraversalRecord {
 
 /// Writes the records of cells of one run into a folder, all files together. Each ray is also visited by the
 /// microprograms, as the hardware calls them. Throws GoldenError if they decide anything else than the model
-/// or the record. Returns a line that says what was written.
-std::string export_traversal(const std::vector<TraversalRecord>& records, const std::string& folder);
+/// or the record. `shading`: with jobs of the shading unit for the hits among them; throws
+/// std::invalid_argument for a machine whose shading that unit does not have. Returns lines that say what was
+/// written.
+std::string export_traversal(const std::vector<TraversalRecord>& records, const std::string& folder,
+                             bool shading);
 
 }  // namespace raycell

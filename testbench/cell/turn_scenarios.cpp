@@ -217,6 +217,33 @@ Script waiting_verdict(const std::string& name, const std::string& says, Cycle f
     return script;
 }
 
+/// A verdict waits for the west output, which was full before it came, and so does a younger answer, until
+/// both are overdue.
+Scenario both_overdue() {
+    Script script = empty_cell("both_overdue",
+                               "of a verdict and an answer that have both waited longer than the starvation "
+                               "bound the older goes first, though it is no answer that passes");
+    const Answer before = answer_to(0, 1, Answer::Kind::lit, 4);
+    const Answer younger = answer_to(0, 1, Answer::Kind::lit, 5);
+    Ray shadow = ray_of(RayKind::shadow, {0, 0.5, 5}, {1, 0, 0});
+    shadow.reach = 0.5;
+    constexpr Cycle since = sent + shadow_link + walk;
+    constexpr Cycle first = overdue_from(since + 100);
+    constexpr Cycle next = room(first, verdict_link);
+    script.in(sent, Side::east, answers, verdict_link, before)
+        .take(routed(verdict_link), Side::east, answers)
+        .out(routed(verdict_link), Side::west, answers, verdict_link, before)
+        .in(sent, Side::west, east_bound, shadow_link, shadow)
+        .in(since + 10, Side::east, answers, verdict_link, younger)
+        .free(first - 1, Side::west, answers)
+        .take(first, Side::west, east_bound)
+        .out(first, Side::west, answers, verdict_link, answer_for(shadow, Answer::Kind::lit))
+        .free(next - 1, Side::west, answers)
+        .take(next, Side::east, answers)
+        .out(next, Side::west, answers, verdict_link, younger);
+    return script.until(first + 1000);
+}
+
 void add_overdue(std::vector<Scenario>& all) {
     constexpr Cycle since = sent + shadow_link + walk;
     constexpr Cycle from = overdue_from(since);
@@ -228,6 +255,7 @@ void add_overdue(std::vector<Scenario>& all) {
                                   "a verdict that has waited longer than the starvation bound goes first",
                                   from - 1, true)
                       .until(from + 1000));
+    all.push_back(both_overdue());
 }
 
 }  // namespace

@@ -85,6 +85,67 @@ void add_full_stores(std::vector<Scenario>& all) {
     }
 }
 
+/// The own ray of cell (1, 1), whose pixel is number 4 of the picture.
+Ray own_ray(const dvec3& position, const dvec3& direction) {
+    Ray ray = ray_of(RayKind::primary, position, direction);
+    ray.home_x = ray.home_y = 1;
+    ray.slot = 0;
+    ray.generation = 0;
+    ray.id = std::uint64_t(4) << 32U;
+    return ray;
+}
+
+void add_own_rays(std::vector<Scenario>& all) {
+    {
+        Script script("own_postponed",
+                      "an own ray that is postponed again and again waits twice as long each time, at last "
+                      "64 times as long");
+        // From the middle of the cell it meets x = 1 at t = 1, where z is dz further. The word of dz is the
+        // root of 3/4 but for one last bit, which the iteration for 1/sqrt leaves.
+        const dvec3 direction{0.5, 0, 227024.0 / 262144};
+        script.setup().picture.viewer = ViewerMode::scene;
+        script.setup().scene.frame.viewer_at_infinity = false;
+        script.setup().scene.frame.eye = dvec3(1.5, 1.5, 0) - 2.0 * direction;
+        const Ray from = own_ray({0.5, 0.5, 0}, direction);
+        const Ray ray = moved_to(from, {0, 0.5, from.direction.z});
+        script.trace(1);
+        Cycle tested = 1 + walk;
+        for (unsigned attempt = 0;; ++attempt) {
+            script.out(tested, Side::east, east_bound, ray_link, ray)
+                .free(tested + ray_link, Side::east, east_bound);
+            const Cycle answered = tested + 100;
+            if (attempt == 8) {
+                const Answer seen = answer_for(ray, Answer::Kind::intensity, {0.5, 0.25, 1});
+                const Cycle home = answered + intensity_link + return_route;
+                script.in(answered, Side::east, answers, intensity_link, seen)
+                    .take(home, Side::east, answers)
+                    .pixel(home, {0.5, 0.25, 1});
+                break;
+            }
+            const Cycle home = answered + verdict_link + return_route;
+            script.in(answered, Side::east, answers, verdict_link, answer_for(ray, Answer::Kind::postponed))
+                .take(home, Side::east, answers);
+            tested = home + back_off(ray.id, attempt) + walk;
+        }
+        all.push_back(script.until(tested + 1000));
+    }
+    {
+        Script script("held_back", "new rays are held back, then the own ray is sent at once");
+        constexpr Cycle released = 50;
+        // The answer that passes in that cycle wakes the model's cell, which else would go on one cycle
+        // later.
+        const Answer passing = answer_for(first, Answer::Kind::lit);
+        script.trace(1)
+            .drain(1, true)
+            .drain(released, false)
+            .in(released - return_route - verdict_link, Side::east, answers, verdict_link, passing)
+            .take(released, Side::east, answers)
+            .out(released, Side::west, answers, verdict_link, passing)
+            .pixel(released + walk, black);
+        all.push_back(script.until(sent + 1000));
+    }
+}
+
 }  // namespace
 
 std::vector<Scenario> waiting_scenarios() {
@@ -144,6 +205,7 @@ std::vector<Scenario> waiting_scenarios() {
                  short_ray_link, child);
         all.push_back(script.until(second_home + 500));
     }
+    add_own_rays(all);
     return all;
 }
 

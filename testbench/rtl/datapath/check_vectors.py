@@ -40,7 +40,8 @@ def build(folder, icarus, faults, bench="datapath_tb"):
     bench_file = os.path.join(HERE, bench + ".sv")
     units = [f"-I{UNITS}"]
     defines = ["-DDATAPATH_FAULTS"] if faults else []
-    packages = [name for name in ("microcode.sv", "visit.sv") if os.path.exists(os.path.join(folder, name))]
+    packages = [name for name in ("raycell_pkg.sv", "microcode.sv", "visit.sv", "shade.sv", "load.sv")
+                if os.path.exists(os.path.join(folder, name))]
     if icarus:
         run(["iverilog", "-g2012", *units, f"-y{UNITS}", "-Y.sv", *defines, "-s", bench, "-o", "bench",
              *packages, bench_file], folder)
@@ -48,8 +49,8 @@ def build(folder, icarus, faults, bench="datapath_tb"):
     run(["verilator", "--lint-only", "-Wall", *units, *defines, "microcode.sv", os.path.join(UNITS, "datapath.sv"),
          "--top-module", "datapath"], folder)
     run(["verilator", "--binary", "--timing", "-O3", "-Wno-fatal", *units, *defines, *packages, bench_file,
-         "--top-module", bench, "--Mdir", "built", "-j", "1", "-CFLAGS", "-O1"], folder)
-    return [f"built/V{bench}"]
+         "--top-module", bench, "--Mdir", f"built_{bench}", "-j", "1", "-CFLAGS", "-O1"], folder)
+    return [f"built_{bench}/V{bench}"]
 
 
 def differences(text):

@@ -11,12 +11,18 @@ if(VERILATOR)
     raycell_datapath_test("every microprogram does in SystemVerilog what it does in the model (words of ${bits} bits)"
         words-${bits} ${bits} --runs 60)
   endforeach()
-  foreach(rung interval edge)
-    set(title "rtl: the traversal unit in SystemVerilog decides about every ray of 16 cells as the model does (${rung})")
-    add_test(NAME ${title} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/rtl/datapath/check_traversal.py ${CMAKE_BINARY_DIR}
-        ${CMAKE_BINARY_DIR}/rtl-datapath/traversal-${rung} ${CMAKE_SOURCE_DIR}/scenes/still_life.nff ${rung} 20)
-    set_tests_properties(${title} PROPERTIES TIMEOUT 600)
-  endforeach()
+  set(title "rtl: the traversal unit in SystemVerilog decides about every ray of 16 cells as the model does (interval)")
+  add_test(NAME ${title} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/rtl/datapath/check_traversal.py ${CMAKE_BINARY_DIR}
+      ${CMAKE_BINARY_DIR}/rtl-datapath/traversal-interval ${CMAKE_SOURCE_DIR}/scenes/still_life.nff interval 20)
+  set_tests_properties(${title} PROPERTIES TIMEOUT 600)
+  set(title "rtl: the traversal and shading units in SystemVerilog test the rays of 16 cells and shade their hits as the model does")
+  add_test(NAME ${title} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/rtl/datapath/check_shading.py ${CMAKE_BINARY_DIR}
+      ${CMAKE_BINARY_DIR}/rtl-datapath/shading ${CMAKE_SOURCE_DIR}/scenes/still_life.nff edge 20 --traversal)
+  set_tests_properties(${title} PROPERTIES TIMEOUT 600)
+  set(title "rtl: loading in SystemVerilog makes the voxels of 16 cells as the model does")
+  add_test(NAME ${title} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/rtl/datapath/check_loading.py ${CMAKE_BINARY_DIR}
+      ${CMAKE_BINARY_DIR}/rtl-datapath/loading ${CMAKE_SOURCE_DIR}/scenes/still_life.nff 20)
+  set_tests_properties(${title} PROPERTIES TIMEOUT 600)
   raycell_datapath_test("vectors find every error put into the datapath on purpose" faults 20 --runs 20 --faults)
 endif()
 if(IVERILOG)

@@ -23,7 +23,7 @@ module traversal_tb;
       .register_value(word), .field_write(field_write), .field_address(field_address), .field_value(word),
       .field(field), .start(start), .shadow(shadow), .finite(finite), .outside(outside), .busy(busy), .what(what),
       .voxel(voxel), .counts_run(counts_run), .counts_test(counts_test), .counts_edge(counts_edge),
-      .computing(computing), .copying(copying));
+      .counts_leave(), .edges_of_test(), .computing(computing), .copying(copying));
 
   always #1 clock = !clock;
 
@@ -83,7 +83,7 @@ module traversal_tb;
     while ($fscanf(list, "%d %d %d", rays, lines, words) == 3) begin
       file = $fopen("registers.hex", "r");
       register_write = 1;
-      for (i = 0; i < microcode::REGISTERS; i = i + 1) begin
+      for (i = 0; i < visit::REGISTERS; i = i + 1) begin
         found = $fscanf(file, "%h", value);
         word = value;
         register_address = microcode::REGISTER_ADDRESS_BITS'(i);

@@ -35,7 +35,7 @@ module accumulator #(
 
   assign product = first * second;
   assign addend = multiply ? ACCUMULATOR_BITS'(product) : ACCUMULATOR_BITS'(a);
-  assign by = fault == 5 ? shift & {(SHIFT_BITS - 1) {shift < 8}} : shift;
+  assign by = fault == FIRST + 5 ? shift & {(SHIFT_BITS - 1) {shift < 8}} : shift;
   assign shifted = nothing ? '0 : addend <<< by;
   assign term = negative ? -shifted : shifted;
   assign held = afresh ? '0 : value;
@@ -43,6 +43,6 @@ module accumulator #(
 
   always_ff @(posedge clock)
     if (enable)
-      if (fault == 4) value <= {held[ACCUMULATOR_BITS-1:HALF] + term[ACCUMULATOR_BITS-1:HALF], sum[HALF-1:0]};
+      if (fault == FIRST + 4) value <= {held[ACCUMULATOR_BITS-1:HALF] + term[ACCUMULATOR_BITS-1:HALF], sum[HALF-1:0]};
       else value <= sum;
 endmodule

@@ -17,6 +17,6 @@ module adder #(
   assign wide = {a[REGISTER_BITS-1], a} - {b[REGISTER_BITS-1], b};
   assign difference = wide[REGISTER_BITS-1:0];
   assign absolute = a < 0 ? -a : a;
-  assign less = wide[REGISTER_BITS] || (fault == 7 && wide == 0);
+  assign less = wide[REGISTER_BITS] || (fault == FIRST + 7 && wide == 0);
   assign zero = a == 0;
 endmodule

@@ -26,5 +26,5 @@ module bit_unit #(
       if (value[i]) leading = NUMBER_BITS'(i);
   end
   assign place = REGISTER_BITS'({1'b0, leading});
-  assign count = fault == 9 && leading == 1 ? '0 : -place;
+  assign count = fault == FIRST + 9 && leading == 1 ? '0 : -place;
 endmodule

@@ -5,7 +5,13 @@ module datapath #(
     parameter int OPERAND_BITS = WORD_BITS + 1,  // words without a sign too
     parameter int REGISTER_BITS = microcode::REGISTER_BITS,
     parameter int ACCUMULATOR_BITS = microcode::ACCUMULATOR_BITS,
-    parameter int REGISTERS = microcode::REGISTERS
+    parameter int REGISTERS = microcode::REGISTERS,
+    // Memories of its own, in the encoding of all.
+    parameter int INSTRUCTIONS = microcode::INSTRUCTIONS,
+    parameter int LINES = microcode::LINES,
+    parameter PROGRAM_FILE = "programs.hex",
+    parameter TABLE_FILE = "tables.hex",
+    parameter REGISTER_FILE = ""  // constants; else they are written from outside
 ) (
     input  logic                                                  clock,
     input  logic                                                  reset,
@@ -44,7 +50,7 @@ module datapath #(
   assign shift_left = shift[microcode::SHIFT_BITS-2:0];
   assign extra = instruction[microcode::EXTRA_LOW+:microcode::EXTRA_BITS];
 
-  sequencer fetcher (
+  sequencer #(.WORDS(INSTRUCTIONS), .FILE(PROGRAM_FILE)) fetcher (
       .clock(clock), .reset(reset), .start(start), .entry(entry), .taken(taken), .target(jump_target),
       .instruction(instruction), .busy(busy));
 
@@ -61,7 +67,7 @@ module datapath #(
   assign runs_table = busy && operation == microcode::TABLE;
   assign read_value = a;
 
-  register_file #(.REGISTER_BITS(REGISTER_BITS), .REGISTERS(REGISTERS), .ADDRESS_BITS(ADDRESS)) registers (
+  register_file #(.REGISTER_BITS(REGISTER_BITS), .REGISTERS(REGISTERS), .ADDRESS_BITS(ADDRESS), .FILE(REGISTER_FILE)) registers (
       .clock(clock), .a_address(a_address), .b_address(b_number), .a(a), .b(b),
       .write(busy ? has_result : write), .write_address(busy ? result_address : write_address),
       .write_value(busy ? result : write_value),
@@ -103,8 +109,8 @@ module datapath #(
       .selected(selected), .count(count));
 
   logic [LINE_ADDRESS-1:0] line;
-  assign line = LINE_ADDRESS'(extra) + LINE_ADDRESS'(high) + LINE_ADDRESS'(fault == 10);
-  table_memory tables (
+  assign line = LINE_ADDRESS'(extra) + LINE_ADDRESS'(high) + LINE_ADDRESS'(fault == FIRST + 10);
+  table_memory #(.LINES(LINES), .FILE(TABLE_FILE)) tables (
       .address(line),
       .start(line_start), .rise(line_rise));
 

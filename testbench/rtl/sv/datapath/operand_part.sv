@@ -18,5 +18,5 @@ module operand_part #(
       if (32'(part) == i) low = OPERAND_BITS'(value >>> (i * (OPERAND_BITS - 1)));
   end
 
-  assign operand = last || fault == 6 ? low : {1'b0, low[OPERAND_BITS-2:0]};
+  assign operand = last || fault == FIRST + 6 ? low : {1'b0, low[OPERAND_BITS-2:0]};
 endmodule

@@ -2,9 +2,12 @@
 module register_file #(
     parameter int REGISTER_BITS = microcode::REGISTER_BITS,
     parameter int REGISTERS = microcode::REGISTERS,
-    parameter int ADDRESS_BITS = microcode::REGISTER_ADDRESS_BITS
+    parameter int ADDRESS_BITS = microcode::REGISTER_ADDRESS_BITS,
+    parameter FILE = ""  // of what they hold at the beginning
 ) (
     input  logic                            clock,
+    // Addresses are wide enough for the most registers in this encoding.
+    // verilator lint_off UNUSEDSIGNAL
     input  logic        [ADDRESS_BITS-1:0]  a_address,
     input  logic        [ADDRESS_BITS-1:0]  b_address,
     output logic signed [REGISTER_BITS-1:0] a,
@@ -15,14 +18,20 @@ module register_file #(
     input  logic                            write_second,
     input  logic        [ADDRESS_BITS-1:0]  second_address,
     input  logic signed [REGISTER_BITS-1:0] second_value
+    // verilator lint_on UNUSEDSIGNAL
 );
-  logic signed [REGISTER_BITS-1:0] words[0:REGISTERS-1];
+  localparam int PLACE = REGISTERS > 1 ? $clog2(REGISTERS) : 1;
 
-  assign a = words[a_address];
-  assign b = words[b_address];
+  logic signed [REGISTER_BITS-1:0] words[0:REGISTERS-1];
+  if (FILE != "") begin : g_constants
+    initial $readmemh(FILE, words);
+  end
+
+  assign a = words[PLACE'(a_address)];
+  assign b = words[PLACE'(b_address)];
 
   always_ff @(posedge clock) begin
-    if (write) words[write_address] <= write_value;
-    if (write_second) words[second_address] <= second_value;
+    if (write) words[PLACE'(write_address)] <= write_value;
+    if (write_second) words[PLACE'(second_address)] <= second_value;
   end
 endmodule

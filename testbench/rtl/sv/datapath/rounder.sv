@@ -39,12 +39,12 @@ module rounder #(
   assign down = cut[ACCUMULATOR_BITS:1];
   assign half = cut[0];
   assign rest = (guarded & ~({(ACCUMULATOR_BITS + 1) {1'b1}} << right)) != 0;
-  assign up = nearest && fault != 1 && half && (rest || down[0] || fault == 2);
+  assign up = nearest && fault != FIRST + 1 && half && (rest || down[0] || fault == FIRST + 2);
   assign rounded = up ? down + 1'b1 : down;
 
   assign wide = WIDE_BITS'(rounded) <<< left;
   assign above = wide >>> (bits - 1'b1);
   assign most = ~({REGISTER_BITS{1'b1}} << (bits - 1'b1));
-  assign word = above == 0 || above == -1 || fault == 3 ? REGISTER_BITS'(wide)
-      : wide[WIDE_BITS-1] ? (fault == 8 ? -most : ~most) : most;
+  assign word = above == 0 || above == -1 || fault == FIRST + 3 ? REGISTER_BITS'(wide)
+      : wide[WIDE_BITS-1] ? (fault == FIRST + 8 ? -most : ~most) : most;
 endmodule

@@ -1,7 +1,9 @@
 // Fetches instructions. The next one is fetched while one runs, so that `end` takes no cycle.
 module sequencer #(
     parameter int ADDRESS_BITS = microcode::INSTRUCTION_ADDRESS_BITS,
-    parameter int BITS = microcode::INSTRUCTION_BITS
+    parameter int BITS = microcode::INSTRUCTION_BITS,
+    parameter int WORDS = microcode::INSTRUCTIONS,
+    parameter FILE = "programs.hex"
 ) (
     input  logic                    clock,
     input  logic                    reset,
@@ -15,7 +17,7 @@ module sequencer #(
   logic [ADDRESS_BITS-1:0] place, next;
   logic [BITS-1:0]         fetched;
 
-  program_memory #(.ADDRESS_BITS(ADDRESS_BITS), .BITS(BITS)) memory (.address(next), .word(fetched));
+  program_memory #(.WORDS(WORDS), .ADDRESS_BITS(ADDRESS_BITS), .BITS(BITS), .FILE(FILE)) memory (.address(next), .word(fetched));
   assign next = !busy ? entry : taken ? target : place + 1'b1;
 
   always_ff @(posedge clock)

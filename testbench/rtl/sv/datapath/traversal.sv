@@ -29,6 +29,8 @@ module traversal (
     output logic                                              counts_run,
     output logic                                              counts_test,
     output logic                                              counts_edge,
+    output logic                                              counts_leave,
+    output logic        [7:0]                                 edges_of_test,  // of the voxel, whether computed or not
     output logic                                              computing,
     output logic                                              copying
 );
@@ -67,15 +69,23 @@ module traversal (
   assign counts_run = state == LINE && starts;
   assign counts_test = state == MEETS && starts;
   assign counts_edge = state == EDGE && starts;
+  assign counts_leave = state == WALKED && starts;
+  assign edges_of_test = visit::HAS_EDGES != 0 && state == TESTED ? 8'(fields[visit::F_EDGES]) : '0;
 
-  copier caller (
+  copier #(
+      .CALLS(visit::CALLS), .CALL(visit::CALL_BITS), .COPIES(visit::COPIES), .COPY(visit::COPY_BITS),
+      .FROM(visit::SOURCE_BITS), .TO(visit::TO_BITS)
+  ) caller (
       .clock(clock), .reset(reset), .start(starts), .call(call), .done(call_done), .copying(copying), .space(space),
-      .from(from), .to_field(to_field), .to(to), .run(run), .entry(entry), .busy(computing));
+      .from(from), .to_space(to_field), .to(to), .run(run), .entry(entry), .busy(computing));
 
   assign read_place = (space == 2'd1 ? line : edge_place) + PLACE'(from);
   assign copied = space == 2'd0 ? fields[FIELD'(from)] : space == 2'd3 ? read_register : store[read_place];
 
-  datapath computer (
+  datapath #(
+      .ACCUMULATOR_BITS(visit::ACCUMULATOR_BITS), .REGISTERS(visit::REGISTERS), .INSTRUCTIONS(visit::INSTRUCTIONS),
+      .LINES(visit::LINES), .REGISTER_FILE("registers.hex")
+  ) computer (
       .clock(clock), .reset(reset), .start(run), .entry(entry), .busy(computing),
       .write(busy ? copying && !to_field : register_write),
       .write_address(busy ? ADDRESS'(to) : register_address), .write_value(busy ? copied : register_value),
