@@ -9,6 +9,7 @@
 #include "testbench/common/options.hpp"
 #include "testbench/raycell/commands.hpp"
 #include "testbench/rtl/package.hpp"
+#include "testbench/rtl/whole_files.hpp"
 
 namespace {
 
@@ -19,6 +20,8 @@ struct Options {
     std::string package;
     std::string header;
     bool setup = false;
+    std::string cell;
+    WholeSizes sizes;
 };
 
 /// The viewer's message of a record, as the cell would latch it: for records that begin when loading is over.
@@ -34,8 +37,12 @@ int run(const Options& options) {
     const RtlPackage package(context, record.setup.machine);
     if (!options.package.empty()) write_text(options.package, package.verilog());
     if (!options.header.empty()) write_text(options.header, package.header());
+    if (!options.cell.empty()) {
+        write_units(options.cell, whole_files(context, record.setup.machine, options.sizes));
+    }
     if (options.setup) print_setup(options.record, record.setup, context);
-    if (options.package.empty() && options.header.empty() && !options.setup) std::cout << package.verilog();
+    if (options.package.empty() && options.header.empty() && options.cell.empty() && !options.setup)
+        std::cout << package.verilog();
     return exit_done;
 }
 
@@ -50,6 +57,15 @@ int run(int argc, char** argv) {
     app.add_option("--package", options.package, "write the package here instead of printing it")
         ->type_name("FILE.sv");
     app.add_option("--header", options.header, "write a C++ header for the benches")->type_name("FILE.hpp");
+    app.add_option("--cell", options.cell,
+                   "write here what the whole cell needs beside the package: microprograms, calls, sizes")
+        ->type_name("FOLDER");
+    app.add_option("--voxels", options.sizes.voxels, "with --cell: voxels that a cell holds")
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--edges", options.sizes.edges, "with --cell: edges of all its voxels")
+        ->type_name("N")
+        ->capture_default_str();
     app.add_flag(
         "--setup", options.setup,
         "print the record's name, the cell's column and row, and the viewer's message: its bits, and "

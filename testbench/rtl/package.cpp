@@ -88,14 +88,22 @@ RtlPackage::Struct struct_of(const std::string& name, const std::vector<WireFiel
     return made;
 }
 
-/// Fields of the viewer's message up to the number of its sources.
-std::size_t head_fields(const std::vector<WireField>& viewer) {
-    const auto sources = std::find_if(viewer.begin(), viewer.end(),
-                                      [](const WireField& field) { return field.name == "sources"; });
-    return std::size_t(sources - viewer.begin()) + 1;
+/// Fields of a layout up to one of this name, that one included; all, if there is none.
+std::size_t fields_up_to(const std::vector<WireField>& layout, const std::string& name) {
+    const auto at = std::find_if(layout.begin(), layout.end(),
+                                 [&](const WireField& field) { return field.name == name; });
+    return std::min(std::size_t(at - layout.begin()) + 1, layout.size());
 }
 
-/// The words between the lines of a table, the last one's end included; the first in the lowest bits.
+/// The fields behind those, which a message repeats.
+std::vector<WireField> fields_behind(const std::vector<WireField>& layout, const std::string& name,
+                                     std::size_t count) {
+    const auto first = layout.begin() + std::ptrdiff_t(fields_up_to(layout, name));
+    return {first, first + std::ptrdiff_t(std::min(count, std::size_t(layout.end() - first)))};
+}
+
+/// The words between the lines of a table, the last one's end included; the first in the lowest bits. One
+/// vector: not every tool takes constants of several dimensions.
 std::string words_of(const Operators::Table& table, int bits) {
     std::vector<std::uint64_t> words;
     for (const auto& line : table.lines) words.push_back(line.start);
@@ -109,9 +117,9 @@ std::string words_of(const Operators::Table& table, int bits) {
 }
 
 std::string table_text(const std::string& name, const Operators::Table& table, int bits) {
-    const std::string last = std::to_string(table.lines.size());
-    return constant(name + "_REST_BITS", table.rest_bits) + "  localparam logic [" + last + ":0][" +
-           std::to_string(bits - 1) + ":0] " + name + "_WORDS = " + words_of(table, bits) + ";\n";
+    const int width = bits * (int(table.lines.size()) + 1);
+    return constant(name + "_REST_BITS", table.rest_bits) + "  localparam logic [" +
+           std::to_string(width - 1) + ":0] " + name + "_WORDS = " + words_of(table, bits) + ";\n";
 }
 
 Side opposite(int side) { return Side((side + 2) % side_count); }
@@ -129,12 +137,19 @@ std::vector<RtlPackage::Struct> RtlPackage::structs() const {
     const Wire wire(context_.settings, machine_, formats);
     const LoadWire load(context_.settings, formats);
     const std::vector<WireField> viewer = load.layout(LoadType::viewer);
-    return {struct_of("ray", wire.layout(WireType::ray)),
-            struct_of("shadow_ray", wire.layout(WireType::shadow_ray)),
-            struct_of("intensity", wire.layout(WireType::intensity)),
-            struct_of("verdict", wire.layout(WireType::lit)),
-            struct_of("setup", viewer, head_fields(viewer)),
-            struct_of("span_head", load.layout(LoadType::span), 4)};  // type, polygon, first and last column
+    const std::vector<WireField> span = load.layout(LoadType::span);
+    std::vector<Struct> made = {struct_of("ray", wire.layout(WireType::ray)),
+                                struct_of("shadow_ray", wire.layout(WireType::shadow_ray)),
+                                struct_of("intensity", wire.layout(WireType::intensity)),
+                                struct_of("verdict", wire.layout(WireType::lit)),
+                                struct_of("setup", viewer, fields_up_to(viewer, "sources")),
+                                struct_of("point", fields_behind(viewer, "sources", viewer.size())),
+                                struct_of("features", load.layout(LoadType::features)),
+                                struct_of("span_head", span, 4),  // type, polygon, first and last column
+                                struct_of("span", span, fields_up_to(span, "edges"))};
+    const std::vector<WireField> edge = fields_behind(span, "edges", 3);
+    if (!edge.empty()) made.push_back(struct_of("span_edge", edge));
+    return made;
 }
 
 std::string RtlPackage::numbers() const {
@@ -142,8 +157,11 @@ std::string RtlPackage::numbers() const {
     std::string text = "\n  // Numbers: bits of a format, and how many of them are a fraction.\n";
     const int word = f.word_bits;
     text += constant("WORD", word) + constant("UNIT_F", f.unit.fraction_bits());
-    const std::pair<const char*, const Format*> formats[] = {
-        {"DEPTH", &f.depth}, {"DISTANCE", &f.distance}, {"REACH", &f.reach}, {"FIELD", &f.field}};
+    const std::pair<const char*, const Format*> formats[] = {{"DEPTH", &f.depth},
+                                                             {"DISTANCE", &f.distance},
+                                                             {"REACH", &f.reach},
+                                                             {"FIELD", &f.field},
+                                                             {"LOADING", &f.loading}};
     for (const auto& [name, format] : formats) {
         text += constant(std::string(name) + "_BITS", format->bits());
         text += constant(std::string(name) + "_F", format->fraction_bits());
@@ -175,9 +193,15 @@ std::string RtlPackage::machine_constants() const {
     const int width = side_count * classes.count;
     text += "  localparam logic [" + std::to_string(width - 1) + ":0] CARRIES = " + std::to_string(width) +
             "'b" + carries + ";  // bit CLASSES * side + class: comes in there\n";
+    const int groups = std::clamp(waiting_generations(context_), 1, machine_.ray_store);
+    const int lights = std::max(1, int(context_.lights.rays.size()));
     text += "\n  // Units, ray store, back-off.\n";
     text += constant("TRAVERSAL_UNITS", machine_.traversal_units) +
+            constant("LOADING_UNITS", machine_.loading_units) +
+            constant("LOAD_VOXEL_CYCLES", int(machine_.costs.load_voxel(picture.hit))) +
             constant("RAY_STORE", machine_.ray_store) +
+            constant("SLOT_BITS", slot_address_bits(picture, machine_)) + constant("SLOT_GROUPS", groups) +
+            constant("LIGHTS", lights) + constant("LIGHT_INDEX_BITS", bits_for(lights)) +
             bit_constant("EXTERIOR", picture.exterior == ExteriorMode::host) +
             constant64("SEED", machine_.seed) + constant64("START_WITHIN", machine_.start_within) +
             constant("PATIENCE", int(AgingArbiter::patience)) + constant("EPOCH", int(AgingArbiter::epoch));
@@ -206,7 +230,7 @@ std::string RtlPackage::costs() const {
             constant("LOAD_FEATURES_BITS", bits.features) + constant("LOAD_SPAN_BITS", bits.span) +
             constant("LOAD_EDGE_BITS", has_edges ? bits.edge : 0) +
             constant("LOAD_END_BITS", bits.end_of_scene) + constant("EDGES_AT", has_edges ? edges_at : 0) +
-            constant("EDGES_BITS", field::edges);
+            constant("EDGES_BITS", field::edges) + constant("SOURCES_BITS", field::source_count);
     for (const auto& [name, cycles] : CostTable::entries())
         text += constant("COST_" + upper(name), machine_.costs.*cycles);
     text += constant("COST_RECIPROCAL", machine_.costs.reciprocal(context_.settings.numbers.operators));
@@ -275,8 +299,9 @@ std::string RtlPackage::header() const {
            number("message_bits", message_bits_) + number("classes", classes.count) +
            number("answers", classes.answer) + number("class_bits", bits_for(classes.count)) +
            number("setup_bits", setup_bits) + number("word_bits", context_.arithmetic.formats().word_bits) +
-           number("buffer", machine_.buffer_depth) + number("columns", context_.settings.width) +
-           number("rows", context_.settings.height) + "}  // namespace rtl\n";
+           number("buffer", machine_.buffer_depth) + number("traversal_units", machine_.traversal_units) +
+           number("columns", context_.settings.width) + number("rows", context_.settings.height) +
+           number("ray_store", machine_.ray_store) + "}  // namespace rtl\n";
 }
 
 }  // namespace raycell

@@ -1,83 +1,28 @@
 #!/usr/bin/python3
-"""Replays golden vectors with the SystemVerilog cell, verilated.
+"""Replays golden vectors with the SystemVerilog cell, by Verilator or, with --icarus, by Icarus Verilog.
 
     testbench/rtl/replay.py [--kit build/rtl_kit] [--work build/rtl] RECORD.txt ...
 
 Records of one machine share a verilated cell; it is kept in the work folder until the cell or its package
-changes. Code 0: no difference; 2: some, named by record, cycle and field; 1: a wrong file, or no Verilator."""
+changes. Code 0: no difference; 2: some, named by record, cycle and field; 1: a wrong file, or no simulator."""
 
 import argparse
-import hashlib
 import os
-import subprocess
 import sys
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-SOURCE = os.path.dirname(os.path.dirname(HERE))
-PACKAGES = ["raycell_numbers.sv", "raycell_cell.sv"]        # in the order in which they need each other
-BENCH = ["replay_main.cpp", "hex_record.cpp", "verilated_cell.cpp", "coverage.cpp"]
-MACHINE, HEADER = "raycell_pkg.sv", "raycell_rtl.hpp"
+from icarus import by_icarus
+from simulators import HEADER, MACHINE, SOURCE, Failed, add_sizes, machine_in, run, sizes_of, verilated
+
+BENCH = ["bench/replay_main.cpp", "bench/hex_record.cpp", "bench/verilated_cell.cpp", "bench/coverage.cpp"]
 
 
-class Failed(Exception):
-    pass
-
-
-def sources():
-    folder = os.path.join(HERE, "sv", "cell")
-    units = sorted(name for name in os.listdir(folder) if name.endswith(".sv") and name not in PACKAGES)
-    return [os.path.join(folder, name) for name in ["waivers.vlt"] + PACKAGES + units]
-
-
-def run(command, log=None, **options):
-    done = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
-    if done.returncode != 0 and log is None:
-        raise Failed(f"{os.path.basename(command[0])}: code {done.returncode}\n{done.stdout[-3000:]}")
-    return done
-
-
-def package_of(kit, record, work):
-    """The machine's package, the benches' header, and the record's line for the replay."""
-    package, header = os.path.join(work, MACHINE), os.path.join(work, HEADER)
-    line = run([kit, record, "--package", package, "--header", header, "--setup"]).stdout
-    with open(package, encoding="utf-8") as text, open(header, encoding="utf-8") as other:
-        return text.read(), other.read(), line
-
-
-def key_of(package, faults, optimise):
-    digest = hashlib.sha256((package + str(faults) + optimise).encode())
-    for path in sources() + [os.path.join(HERE, "bench", name) for name in sorted(os.listdir(HERE + "/bench"))]:
-        with open(path, "rb") as text:
-            digest.update(text.read())
-    return digest.hexdigest()[:16]
-
-
-def verilated(package, header, options):
-    """The replay program of a machine, built if it is not there."""
-    folder = os.path.join(options.work, key_of(package, options.faults, options.optimise))
-    program = os.path.join(folder, "obj", "rtl_replay")
-    if os.path.exists(program):
-        return program
-    os.makedirs(folder, exist_ok=True)
-    for name, text in ((MACHINE, package), (HEADER, header)):
-        with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
-            file.write(text)
-    lint = [options.verilator, "--lint-only", "-Wall", "--top-module", "empty_cell", os.path.join(folder, MACHINE)]
-    silent = run(lint + sources()).stdout
-    if silent.strip():
-        raise Failed(f"verilator --lint-only -Wall is not silent:\n{silent}")
-    command = [options.verilator, "--cc", "--exe", "--build", "-j", "1", "-O3", "--unroll-count", "4",
-               "--x-assign", "0", "--top-module", "empty_cell", "--Mdir", os.path.join(folder, "obj"),
-               "-CFLAGS", f"-std=c++17 {options.optimise} -I{SOURCE} -I{folder}" + (" -DRTL_FAULTS" * options.faults),
-               os.path.join(folder, MACHINE)]
-    command += sources() + [os.path.join(HERE, "bench", name) for name in BENCH] + ["-o", "rtl_replay"]
-    if options.faults:
-        command.append("+define+RTL_FAULTS")
-    environment = dict(os.environ)
-    if any(os.access(os.path.join(path, "ccache"), os.X_OK) for path in environment["PATH"].split(":")):
-        environment.setdefault("OBJCACHE", "ccache")
-    run(command, env=environment)
-    return program
+def machine_of(record, options):
+    """The machine's packages and the benches' header, and the record's line for the replay."""
+    work = os.path.join(options.work, "machine")
+    os.makedirs(work, exist_ok=True)
+    line = run([options.kit, record, "--package", os.path.join(work, MACHINE), "--header", os.path.join(work, HEADER),
+                "--setup"] + options.whole * (["--cell", work] + sizes_of(options))).stdout
+    return machine_in(work, options.whole), line
 
 
 def has_span(record):
@@ -99,8 +44,8 @@ def groups(options):
     for record in options.records:
         if options.leave_out_voxels and has_span(record):
             continue
-        package, header, line = package_of(options.kit, record, options.work)
-        found.setdefault((package, header), []).append(line)
+        machine, line = machine_of(os.path.abspath(record), options)
+        found.setdefault(machine, []).append(line)
     return found
 
 
@@ -110,15 +55,21 @@ def main():
     parser.add_argument("--kit", default=os.path.join(SOURCE, "build", "rtl_kit"), help="rtl_kit")
     parser.add_argument("--work", default=os.path.join(SOURCE, "build", "rtl"), help="folder of the verilated cells")
     parser.add_argument("--verilator", default="verilator", help="Verilator")
+    parser.add_argument("--icarus", action="store_true", help="by Icarus Verilog (11 was used), which is slow; without coverage")
     parser.add_argument("--optimise", default="-O0", help="of the C++ compiler; -O0 is ready soonest")
     parser.add_argument("--coverage", action="store_true", help="print what the records made the cell do")
     parser.add_argument("--leave-out-voxels", action="store_true",
                         help="leave out records in whose cell a span begins, instead of failing at it")
+    add_sizes(parser)
     parser.add_argument("--every-cycle", action="store_true", help="run cycles in which the cell is idle, too")
     parser.add_argument("--faults", action="store_true", help="build a cell that errors can be put into")
     parser.add_argument("--fault", type=int, action="append",
                         help="put this error in, with --faults (raycell_numbers.sv); several: a replay for each")
     options = parser.parse_args()
+    if options.icarus and (options.coverage or options.every_cycle or options.whole):
+        parser.error("--icarus: expected none of --coverage, --every-cycle, --whole beside it")
+    if options.fault and not options.faults:
+        parser.error("--fault: expected --faults, too")
     options.work = os.path.abspath(options.work)
     os.makedirs(options.work, exist_ok=True)
     code = 0
@@ -126,13 +77,18 @@ def main():
     left_out = len(options.records) - sum(len(lines) for lines in found.values())
     if left_out:
         print(f"{left_out} records left out: a span begins in their cells")
-    for (package, header), lines in found.items():
-        command = [verilated(package, header, options)]
+    for machine, lines in found.items():
+        command = [] if options.icarus else [verilated(machine, options, "rtl_replay", BENCH)]
         command += ["--coverage"] * options.coverage + ["--every-cycle"] * options.every_cycle
         for fault in options.fault or [0]:
             if fault:
                 print(f"fault {fault}")
-            done = run(command + ["--fault", str(fault)], log=True, input="".join(lines))
+            if options.icarus:
+                code = max(code, by_icarus(machine, lines, fault, options))
+                continue
+            # Microprograms are read from the current folder.
+            done = run(command + ["--fault", str(fault)], log=True, input="".join(lines),
+                       cwd=os.path.dirname(os.path.dirname(command[0])))
             print(done.stdout, end="")
             if done.returncode not in (0, 2):
                 raise Failed(f"rtl_replay: code {done.returncode}")

@@ -4,27 +4,13 @@ namespace rtl {
 namespace {
 
 constexpr const char* side_names[] = {"east", "south", "west", "north", "home"};
-constexpr int ray_classes = classes - 1;
-constexpr int places = sides * ray_classes + 1;
-constexpr int own = places - 1;
-constexpr int requesters = sides + places;
-
 int side_of_place(int place) { return place / ray_classes; }
 std::string from(int requester) {
     if (requester < sides) return std::string("answer from ") + side_names[requester];
-    if (requester == sides + own) return "own ray";
-    return std::string("ray from ") + side_names[side_of_place(requester - sides)];
-}
-
-/// Entry `at` of an array of 48 bits each.
-template <typename Wide>
-std::uint64_t bits48(const Wide& wide, int at) {
-    std::uint64_t value = 0;
-    for (int part = 0; part < 3; ++part) {
-        const int low = 48 * at + 16 * part;
-        value |= std::uint64_t(wide[low / 32] >> (low % 32) & 0xffff) << (16 * part);
-    }
-    return value;
+    if (requester < first_ray) return "own reply";
+    const int place = requester - first_ray;
+    if (place == own_place) return "own ray";
+    return place > own_place ? "child" : std::string("ray from ") + side_names[side_of_place(place)];
 }
 
 }  // namespace
@@ -34,12 +20,21 @@ Coverage::Coverage() {
         for (int to = 0; to <= sides; ++to)
             if (to != r) bin(from(r) + " to " + side_names[to]);
     }
-    for (int p = 0; p < places; p += p < own ? ray_classes : 1) {
-        const std::string who = from(sides + p);
+    if (replies > 0) {
+        for (const char* to : side_names) bin(std::string("own reply to ") + to);
+    }
+    for (int p = 0; p < places && p <= own_place + 1; p += p < own_place ? ray_classes : 1) {
+        const std::string who = from(first_ray + p);
         for (int to = 0; to < sides; ++to)
-            if (p == own || to != side_of_place(p)) bin(who + " to " + side_names[to]);
+            if (p >= own_place || to != side_of_place(p)) bin(who + " to " + side_names[to]);
         bin(who + " ends here, answer to home");
-        if (p != own) bin(who + " ends here, answer goes on");
+        if (p < own_place) bin(who + " ends here, answer goes on");
+    }
+    if (replies > 0) {
+        for (const char* what :
+             {"hit takes a slot", "hit waits", "hit is postponed", "all slots are taken", "child postponed",
+              "replies go before answers", "children of two slots are made"})
+            bin(what);
     }
     for (const char* what :
          {"ray ends without an answer", "ray waits: far buffer is full", "answer waits: far buffer is full",
@@ -57,41 +52,55 @@ void Coverage::bin(const std::string& name) {
 }
 
 void Coverage::sample(VerilatedCell& cell) {
-    const Vempty_cell& top = cell.top();
+    const Top& top = cell.top();
     if (top.draining) count("new rays held back");
     if (top.phase == 1) count("phase precast");
     int untested = 0;
-    for (int p = 0; p < places; ++p) untested += top.untested >> p & 1;
+    for (int p = 0; p < places; ++p) untested += int(bits_at(top.untested, p, 1));
     if (untested >= 2) count("two rays wait for a test");
     if (untested > 2) count("more rays than free units");
     if (top.pixel_valid) count("pixel complete");
     if (top.again) count("ray is tested again outside the cube");
+#ifdef RTL_WHOLE
+    if (top.takes_slot) count("hit takes a slot");
+    if (top.slots_full) count("all slots are taken");
+    if (top.child_postponed) count("child postponed");
+    if (top.replies_lead) count("replies go before answers");
+    if (top.feeds & (top.feeds - 1)) count("children of two slots are made");
+#endif
     if (!top.asks) return;
     int going = 0;
-    const auto goal = [&](int r) { return int(top.goal >> (3 * r) & 7); };
-    const auto asks = [&](int r) { return top.asks >> r & 1; };
+    const auto goal = [&](int r) { return int(bits_at(top.goal, 3 * r, 3)); };
+    const auto asks = [&](int r) { return bits_at(top.asks, r, 1) != 0; };
     for (int r = 0; r < requesters; ++r) {
         if (!asks(r)) continue;
-        const bool answer = r < sides;
-        const bool goes = top.goes >> r & 1;
+        const bool answer = r < first_ray;
+        const bool goes = bits_at(top.goes, r, 1) != 0;
         if (!goes) {
-            if (top.stalls_full >> r & 1)
+            if (bits_at(top.stalls_full, r, 1))
                 count(answer ? "answer waits: far buffer is full" : "ray waits: far buffer is full");
-            if (top.stalls_wires >> r & 1)
+            if (bits_at(top.stalls_wires, r, 1))
                 count(answer ? "answer waits: wires are busy" : "ray waits: wires are busy");
         }
         for (int other = 0; other < r; ++other) {
             if (!asks(other) || goal(other) != goal(r)) continue;
             count(goal(r) == home ? "two want home" : "two ask for one output");
-            const auto since = [&](int who) { return bits48(top.asks_since, who); };
+            const auto since = [&](int who) { return bits_at(top.asks_since, 48 * who, 48); };
             if (since(other) == since(r)) count("tie: two asked since the same cycle");
-            if ((other < sides) != answer) count("ray and answer ask for one output");
+            if ((other < first_ray) != answer) count("ray and answer ask for one output");
         }
+#ifdef RTL_WHOLE
+        if (!answer && bits_at(top.hits, r - first_ray, 1)) {
+            if (!goes) count("hit waits");
+            if (goes && !top.takes_slot) count("hit is postponed");
+            continue;
+        }
+#endif
         if (!goes) continue;
         ++going;
-        if (top.overdue >> r & 1) count(answer ? "overdue answer leaves" : "overdue ray leaves");
+        if (bits_at(top.overdue, r, 1)) count(answer ? "overdue answer leaves" : "overdue ray leaves");
         if (answer || !(top.silent && goal(r) == 0 && !top.out_valid))
-            count_way(r, goal(r), !answer && (top.ends >> (r - sides) & 1));
+            count_way(r, goal(r), !answer && bits_at(top.ends, r - first_ray, 1));
     }
     if (top.silent) count("ray ends without an answer");
     if (top.postponed) count("own ray postponed");
@@ -99,7 +108,7 @@ void Coverage::sample(VerilatedCell& cell) {
 }
 
 void Coverage::count_way(int requester, int to, bool ends) {
-    if (requester < sides) return count(from(requester) + " to " + side_names[to]);
+    if (requester < first_ray) return count(from(requester) + " to " + side_names[to]);
     if (ends)
         return count(to == home ? from(requester) + " ends here, answer to home"
                                 : from(requester) + " ends here, answer goes on");

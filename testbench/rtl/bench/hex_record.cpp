@@ -34,7 +34,8 @@ Line line_of(const std::string& text, const std::string& path) {
             int(number(parts[3])),
             std::uint32_t(number(parts[4])),
             int(number(parts[5])),
-            parts[6]};
+            parts[6],
+            0};
 }
 
 std::vector<Line> lines_of(const std::string& path, std::uint64_t& last) {
@@ -64,6 +65,28 @@ void read_head(HexRecord& record, const std::string& path) {
             const auto colon = field.rfind(':');
             record.layouts[name].emplace_back(field.substr(0, colon), std::atoi(field.c_str() + colon + 1));
         }
+    }
+}
+
+/// The ids of the messages that come in, from the remarks of the text: "... ; pixel 250 branch 0 kind
+/// primary".
+void read_ids(HexRecord& record, const std::string& path) {
+    std::ifstream in = opened(path);
+    std::string text;
+    while (std::getline(in, text) && text != "begin") {
+    }
+    std::size_t next = 0;
+    while (std::getline(in, text)) {
+        if (text.find(" in ") == std::string::npos) continue;
+        while (next < record.in.size() && record.in[next].what != What::in) ++next;
+        if (next == record.in.size()) return;
+        Line& line = record.in[next++];
+        const auto remark = text.find("; pixel ");
+        if (remark == std::string::npos) continue;
+        std::istringstream words(text.substr(remark + 2));
+        std::string name;
+        std::uint64_t pixel = 0, branch = 0;
+        if (words >> name >> pixel >> name >> branch) line.id = pixel << 32 | branch;
     }
 }
 
@@ -116,6 +139,7 @@ HexRecord read_record(const std::string& path) {
     read_head(record, path);
     std::uint64_t last = 0;
     record.in = lines_of(stem + ".in.hex", record.last);
+    read_ids(record, path);
     record.out = lines_of(stem + ".out.hex", last);
     return record;
 }

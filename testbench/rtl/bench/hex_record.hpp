@@ -19,7 +19,8 @@ struct Line {
     int index = 0;  ///< buffer class; of a phase 1 precast, 2 trace; of drain 0 or 1
     std::uint32_t link = 0;
     int bits = 0;
-    std::string message;  ///< digits, the first bit sent on the left
+    std::string message;   ///< digits, the first bit sent on the left
+    std::uint64_t id = 0;  ///< of the ray; no wire carries it, the text beside the digits does
 };
 
 /// Bits of a message, from its left.

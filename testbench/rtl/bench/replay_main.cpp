@@ -52,7 +52,7 @@ class Replay {
             bool begins = false;
             while (next < record_.in.size() && record_.in[next].cycle <= now) {
                 const Line& line = record_.in[next++];
-                if (line.what == What::in) cell_.in(line.side, line.index, line.link, line.message);
+                if (line.what == What::in) cell_.in(line.side, line.index, line.link, line.message, line.id);
                 if (line.what == What::free) cell_.free(line.side, line.index);
                 if (line.what == What::drain) cell_.drain(line.index == 1);
                 if (line.what == What::phase) phase = line.index, begins = true;
@@ -60,6 +60,9 @@ class Replay {
             cell_.phase(phase, begins);
             cell_.settle();
             compare();
+#ifdef RTL_WHOLE
+            if (cell_.late()) differ("the microprograms took longer than the cost table says");
+#endif
             coverage_.sample(cell_);
             cell_.clock();
             ++cycles_;

@@ -1,7 +1,11 @@
 #include "testbench/rtl/bench/verilated_cell.hpp"
 
 #ifdef RTL_FAULTS
+#ifdef RTL_WHOLE
+#include "Vwhole_cell_raycell_numbers.h"
+#else
 #include "Vempty_cell_raycell_numbers.h"
+#endif
 #endif
 
 namespace rtl {
@@ -52,7 +56,7 @@ int fault_of_all = 0;
 static_assert(message_bits % 4 == 0, "a message port is a whole number of digits");
 
 VerilatedCell::VerilatedCell(VerilatedContext& context, int x, int y)
-    : top_(std::make_unique<Vempty_cell>(&context, "cell")) {
+    : top_(std::make_unique<Top>(&context, "cell")) {
     top_->x = x;
     top_->y = y;
 }
@@ -98,7 +102,8 @@ void VerilatedCell::phase(int code, bool begins) {
     top_->phase_begins = begins;
 }
 
-void VerilatedCell::in(int side, int index, std::uint32_t cycles, const std::string& message) {
+void VerilatedCell::in(int side, int index, std::uint32_t cycles, const std::string& message,
+                       std::uint64_t id) {
     top_->in_valid |= 1 << side;
     put_bits(top_->in_class, side * class_bits, class_bits, std::uint64_t(index));
     for (int i = 0; i < 16; ++i) {
@@ -108,6 +113,8 @@ void VerilatedCell::in(int side, int index, std::uint32_t cycles, const std::str
         part = (cycles >> i & 1) ? part | mask : part & ~mask;
     }
     put_digits(top_->in_message, side * message_bits, message_bits, message);
+    top_->in_id[2 * side] = std::uint32_t(id);
+    top_->in_id[2 * side + 1] = std::uint32_t(id >> 32);
 }
 
 void VerilatedCell::free(int side, int index) { top_->free |= 1 << (side * classes + index); }
@@ -118,7 +125,19 @@ void VerilatedCell::clock() {
     top_->clock = 1;
     top_->eval();
     top_->clock = 0;
+#ifdef RTL_WHOLE
+    for (int i = 0; i < fast_edges && (top_->computes || top_->reset || top_->preset); ++i) fast();
+#endif
 }
+
+#ifdef RTL_WHOLE
+void VerilatedCell::fast() {
+    top_->fast_clock = 1;
+    top_->eval();
+    top_->fast_clock = 0;
+    top_->eval();
+}
+#endif
 
 Sent VerilatedCell::sent(int side) const {
     const int index = int(top_->out_class >> (side * class_bits) & ((1 << class_bits) - 1));

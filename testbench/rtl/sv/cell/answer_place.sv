@@ -11,6 +11,7 @@ module answer_place
     input  logic [Y_BITS-1:0] y,
     input  logic arrives,
     input  logic [INTENSITY_BITS-1:0] arrives_message,
+    input  id_t arrives_id,
     input  logic leaves,
     output logic ready,
     output time_t since,
@@ -18,27 +19,28 @@ module answer_place
     output logic [1:0] side,
     output logic [15:0] cycles,
     output logic [INTENSITY_BITS-1:0] message,
+    output id_t id,
     output logic empty
 );
   localparam int COUNT = $clog2(BUFFER + 1);
   logic [COUNT-1:0] count;
-  logic [INTENSITY_BITS-1:0] second;
+  logic [ID_BITS+INTENSITY_BITS-1:0] second;
   time_t arrival;
 
   message_buffer #(
-      .BITS (INTENSITY_BITS),
+      .BITS (ID_BITS + INTENSITY_BITS),
       .DEPTH(BUFFER)
   ) buffer (
       .clock,
       .reset,
       .push(arrives),
-      .push_message(arrives_message),
+      .push_message({arrives_id, arrives_message}),
       .push_arrival(now + 1'b1),
       .pop(leaves),
       .replace(1'b0),
-      .replacement('0),
+      .replacement({(ID_BITS + INTENSITY_BITS) {1'b0}}),
       .count,
-      .head(message),
+      .head({id, message}),
       .arrival,
       .second
   );
@@ -47,8 +49,8 @@ module answer_place
   verdict_t verdict;
   logic is_intensity;
   always_comb begin
-    intensity = intensity_t'(message);
-    verdict = verdict_t'(message[INTENSITY_BITS-1-:VERDICT_BITS]);
+    intensity = message;
+    verdict = message[INTENSITY_BITS-1-:VERDICT_BITS];
     is_intensity = intensity.message_type == TYPE_INTENSITY;
     cycles = is_intensity ? 16'(INTENSITY_CYCLES) : 16'(VERDICT_CYCLES);
   end

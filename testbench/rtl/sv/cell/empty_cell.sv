@@ -21,17 +21,20 @@ module empty_cell
     input  logic [SIDES:0][CLASS_BITS-1:0] in_class,
     input  logic [SIDES:0][15:0] in_cycles,
     input  logic [SIDES:0][MESSAGE_BITS-1:0] in_message,
+    input  logic [SIDES:0][ID_BITS-1:0] in_id,  // beside the wires
     output logic [SIDES:0][CLASSES-1:0] take,  // the oldest message leaves the buffer
     output logic [SIDES-1:0] out_valid,
     output logic [SIDES-1:0][CLASS_BITS-1:0] out_class,
     output logic [SIDES-1:0][15:0] out_cycles,
     output logic [SIDES-1:0][MESSAGE_BITS-1:0] out_message,
+    output logic [SIDES-1:0][ID_BITS-1:0] out_id,
     input  logic [SIDES-1:0][CLASSES-1:0] free,  // a place at the far end
     output logic pixel_valid,
     output logic [3*WORD-1:0] pixel,
     output logic makes_voxel,  // a span begins here: not a cell for this scene
     output logic idle,  // nothing happens before something comes
-    // What happens inside, for coverage.
+    output logic still,  // nor before a place at a far end is freed
+    // What happens inside, for coverage and for the books of an array.
     output logic [SIDES+PLACES-1:0] asks,
     output logic [SIDES+PLACES-1:0] goes,
     output logic [SIDES+PLACES-1:0] stalls_full,
@@ -39,11 +42,15 @@ module empty_cell
     output logic [SIDES+PLACES-1:0] overdue,
     output logic [PLACES-1:0] untested,
     output logic [SIDES+PLACES-1:0][2:0] goal,  // side, or 4: home
-    output time_t [SIDES+PLACES-1:0] asks_since,
+    output logic [SIDES+PLACES-1:0][TIME_BITS-1:0] asks_since,
     output logic [PLACES-1:0] ends,  // a ray, with an answer
     output logic silent,  // a ray ended without one
     output logic again,  // a ray has left the cube and is to be tested again
-    output logic postponed  // the own ray, says a notice
+    output logic postponed,  // the own ray, says a notice
+    output logic [PLACES-1:0] ends_silently,  // a ray, without an answer
+    output logic feed,  // the own ray comes into its register
+    output logic [TRAVERSAL_UNITS-1:0] test_starts,
+    output logic [TRAVERSAL_UNITS-1:0][PLACE_INDEX_BITS-1:0] test_place
 );
   localparam int REQUESTERS = SIDES + PLACES;  // answers by side, then rays by place
   localparam int KEY_BITS = TIME_BITS + 2;
@@ -53,45 +60,37 @@ module empty_cell
   assign loading = phase == PHASE_LOAD;
   assign tracing = !loading;
 
-  // Receivers.
-  logic [SIDES:0] arrives, receiver_idle;
+  logic [SIDES:0] arrives;
+  logic links_idle;
   logic [SIDES:0][CLASS_BITS-1:0] arrives_class;
   logic [SIDES:0][15:0] arrives_cycles;
   logic [SIDES:0][MESSAGE_BITS-1:0] arrives_message;
-  for (genvar s = 0; s <= SIDES; s++) begin : g_receiver
-    receiver from (
-        .clock,
-        .reset,
-        .now,
-        .valid(in_valid[s]),
-        .in_class(in_class[s]),
-        .in_cycles(in_cycles[s]),
-        .in_message(in_message[s]),
-        .arrives(arrives[s]),
-        .arrives_class(arrives_class[s]),
-        .arrives_cycles(arrives_cycles[s]),
-        .arrives_message(arrives_message[s]),
-        .idle(receiver_idle[s])
-    );
-  end
-
-  // Outputs.
+  logic [SIDES:0][ID_BITS-1:0] arrives_id;
   logic [SIDES-1:0][CLASSES-1:0] room, full;
   logic [SIDES-1:0] wires_busy;
-  for (genvar s = 0; s < SIDES; s++) begin : g_out
-    out_link to (
-        .clock,
-        .reset,
-        .now,
-        .send(out_valid[s]),
-        .send_class(out_class[s]),
-        .send_cycles(out_cycles[s]),
-        .free(free[s]),
-        .room(room[s]),
-        .full(full[s]),
-        .wires_busy(wires_busy[s])
-    );
-  end
+  cell_links links (
+      .clock,
+      .reset,
+      .now,
+      .in_valid,
+      .in_class,
+      .in_cycles,
+      .in_message,
+      .in_id,
+      .arrives,
+      .arrives_class,
+      .arrives_cycles,
+      .arrives_message,
+      .arrives_id,
+      .idle(links_idle),
+      .out_valid,
+      .out_class,
+      .out_cycles,
+      .free,
+      .room,
+      .full,
+      .wires_busy
+  );
 
   // Loading: from the distributor in the first column, else from the west.
   logic load_take, load_send, load_is_setup, load_idle, first_column;
@@ -121,7 +120,7 @@ module empty_cell
   setup_t viewer;
   known_t known;
   assign latch  = preset || (load_is_setup && load_take);
-  assign viewer = preset ? setup_t'(preset_viewer) : setup_t'(load_message[MESSAGE_BITS-1-:SETUP_BITS]);
+  assign viewer = preset ? preset_viewer : load_message[MESSAGE_BITS-1-:SETUP_BITS];
   viewer_latch latched (
       .clock,
       .reset,
@@ -147,47 +146,39 @@ module empty_cell
   // Places of rays, and who is tested.
   logic [PLACES-1:0] leaves, decided, place_empty, started, test_ends;
   logic [PLACES-1:0][RAY_BITS-1:0] to_test, message;
-  time_t [PLACES-1:0] since;
-  decision_t [PLACES-1:0] decision, found;
+  logic [PLACES-1:0][ID_BITS-1:0] id;
+  logic [PLACES-1:0][TIME_BITS-1:0] since;
+  logic [PLACES-1:0][DECISION_BITS-1:0] decision, found;
   logic [TRAVERSAL_UNITS-1:0] unit_busy, unit_start, unit_done;
   logic [TRAVERSAL_UNITS-1:0][PLACE_INDEX_BITS-1:0] unit_takes, unit_place;
-  decision_t [TRAVERSAL_UNITS-1:0] unit_found;
+  logic [TRAVERSAL_UNITS-1:0][DECISION_BITS-1:0] unit_found;
+  logic [TRAVERSAL_UNITS-1:0] unit_again;
 
-  for (genvar p = 0; p < OWN; p++) begin : g_place
-    localparam int SIDE = p / RAY_CLASSES;
-    localparam int CLASS = p % RAY_CLASSES;
-    if (CARRIES[CLASSES*SIDE+CLASS]) begin : g_used
-      ray_place place (
-          .clock,
-          .reset,
-          .now,
-          .arrives(tracing && arrives[SIDE] && int'(arrives_class[SIDE]) == CLASS),
-          .arrives_message(arrives_message[SIDE][MESSAGE_BITS-1-:RAY_BITS]),
-          .leaves(leaves[p]),
-          .test_starts(started[p]),
-          .test_ends(test_ends[p]),
-          .found(found[p]),
-          .untested(untested[p]),
-          .to_test(to_test[p]),
-          .decided(decided[p]),
-          .since(since[p]),
-          .decision(decision[p]),
-          .message(message[p]),
-          .empty(place_empty[p])
-      );
-    end else begin : g_none  // no ray of this class comes over this side
-      assign untested[p] = 1'b0;
-      assign decided[p] = 1'b0;
-      assign place_empty[p] = 1'b1;
-      assign to_test[p] = '0;
-      assign message[p] = '0;
-      assign since[p] = '0;
-      assign decision[p] = '0;
-    end
-  end
+  input_places inputs (
+      .clock,
+      .reset,
+      .now,
+      .tracing,
+      .arrives,
+      .arrives_class,
+      .arrives_message,
+      .arrives_id,
+      .leaves(leaves[OWN-1:0]),
+      .test_starts(started[OWN-1:0]),
+      .test_ends(test_ends[OWN-1:0]),
+      .found(found[OWN-1:0]),
+      .untested(untested[OWN-1:0]),
+      .to_test(to_test[OWN-1:0]),
+      .decided(decided[OWN-1:0]),
+      .since(since[OWN-1:0]),
+      .decision(decision[OWN-1:0]),
+      .message(message[OWN-1:0]),
+      .id(id[OWN-1:0]),
+      .empty(place_empty[OWN-1:0])
+  );
 
   // The own ray's register: a ray can be tested in the cycle in which it comes there.
-  logic feed, own_untested, delivered, pixel_idle;
+  logic own_untested, delivered, pixel_idle;
   logic [RAY_BITS-1:0] own_to_test;
   logic [INTENSITY_BITS-1:0] delivered_answer;
   own_pixel own (
@@ -215,6 +206,7 @@ module empty_cell
       .now,
       .arrives(feed),
       .arrives_message(primary),
+      .arrives_id({32'(y) * 32'(COLUMNS) + 32'(x), 32'd0}),
       .leaves(leaves[OWN]),
       .test_starts(started[OWN]),
       .test_ends(test_ends[OWN]),
@@ -225,6 +217,7 @@ module empty_cell
       .since(since[OWN]),
       .decision(decision[OWN]),
       .message(message[OWN]),
+      .id(id[OWN]),
       .empty(place_empty[OWN])
   );
   assign untested[OWN] = feed || own_untested;
@@ -257,6 +250,11 @@ module empty_cell
         .place(unit_place[u]),
         .decision(unit_found[u])
     );
+    logic [DECISION_BITS-1:0] result;
+    assign result = unit_found[u];
+    assign unit_again[u] = unit_done[u] && result[DECISION_BITS-1-:3] == NEED_TEST;
+    logic unused;
+    assign unused = &{1'b0, result};
   end
   always_comb begin
     test_ends = '0;
@@ -274,39 +272,46 @@ module empty_cell
   logic [REQUESTERS-1:0][CLASS_BITS-1:0] wanted_class;
   logic [REQUESTERS-1:0][15:0] wanted_cycles;
   logic [REQUESTERS-1:0][RAY_BITS-1:0] wanted_message;
-  time_t [REQUESTERS-1:0] ready_since;
+  logic [REQUESTERS-1:0][ID_BITS-1:0] wanted_id;
+  logic [REQUESTERS-1:0][TIME_BITS-1:0] ready_since;
 
-  logic [SIDES-1:0] answers_empty;
-  for (genvar s = 0; s < SIDES; s++) begin : g_answers
-    answer_place place (
-        .clock,
-        .reset,
-        .now,
-        .x,
-        .y,
-        .arrives(tracing && arrives[s] && int'(arrives_class[s]) == ANSWERS),
-        .arrives_message(arrives_message[s][MESSAGE_BITS-1-:INTENSITY_BITS]),
-        .leaves(goes[s]),
-        .ready(ready[s]),
-        .since(ready_since[s]),
-        .home(home[s]),
-        .side(side[s]),
-        .cycles(wanted_cycles[s]),
-        .message(wanted_message[s][RAY_BITS-1-:INTENSITY_BITS]),
-        .empty(answers_empty[s])
-    );
-    assign wanted_message[s][RAY_BITS-INTENSITY_BITS-1:0] = '0;
-    assign wanted_class[s] = CLASS_BITS'(ANSWERS);
-    assign nothing[s] = 1'b0;
-  end
+  logic answers_idle, answers_wait;
+  answer_places answers (
+      .clock,
+      .reset,
+      .now,
+      .x,
+      .y,
+      .tracing,
+      .arrives,
+      .arrives_class,
+      .arrives_message,
+      .arrives_id,
+      .leaves(goes[SIDES-1:0]),
+      .ready(ready[SIDES-1:0]),
+      .since(ready_since[SIDES-1:0]),
+      .home(home[SIDES-1:0]),
+      .side(side[SIDES-1:0]),
+      .cycles(wanted_cycles[SIDES-1:0]),
+      .message(wanted_message[SIDES-1:0]),
+      .id(wanted_id[SIDES-1:0]),
+      .idle(answers_idle),
+      .waits(answers_wait)
+  );
+  assign wanted_class[SIDES-1:0] = {SIDES{CLASS_BITS'(ANSWERS)}};
+  assign nothing[SIDES-1:0] = '0;
   for (genvar p = 0; p < PLACES; p++) begin : g_request
     assign ready[SIDES+p] = decided[p];
     assign ready_since[SIDES+p] = since[p];
+    assign wanted_id[SIDES+p] = id[p];
+    logic [DECISION_BITS-1:0] decided_for;
+    assign decided_for = decision[p];
+    assign ends[p] = leaves[p] && decided_for[DECISION_BITS-1-:3] == NEED_ANSWER;
     ray_request request (
         .x,
         .y,
         .known,
-        .decision(decision[p]),
+        .decision(decided_for),
         .message(message[p]),
         .nothing(nothing[SIDES+p]),
         .home(home[SIDES+p]),
@@ -320,28 +325,29 @@ module empty_cell
   // Overdue messages before all others, oldest first; then answers before rays.
   time_t began;
   assign began = now & ~(TIME_BITS'(EPOCH) - 1'b1);
+  assign asks  = tracing ? ready : '0;
   logic [REQUESTERS-1:0][KEY_BITS-1:0] key;
+  logic [REQUESTERS-1:0][SIDES:0] asks_for;
   logic [SIDES:0][REQUESTERS-1:0] resource_asks, resource_wins;
-  always_comb begin
-    resource_asks = '0;
-    stalls_full   = '0;
-    stalls_wires  = '0;
-    goal          = '0;
-    asks          = tracing ? ready : '0;
-    for (int i = 0; i < REQUESTERS; i++) begin
-      overdue[i] = ready[i] && ready_since[i] + TIME_BITS'(PATIENCE) < began && fault != FAULT_AGE;
-      key[i] = {!overdue[i], !overdue[i] && i >= SIDES, fault == FAULT_ORDER ? '0 : ready_since[i]};
-      if (asks[i] && !nothing[i]) begin
-        if (home[i]) begin
-          goal[i] = 3'(PORT);
-          resource_asks[PORT][i] = 1'b1;
-        end else begin
-          goal[i] = {1'b0, side[i]};
-          resource_asks[side[i]][i] = room[side[i]][wanted_class[i]];
-          stalls_full[i] = full[side[i]][wanted_class[i]];
-          stalls_wires[i] = wires_busy[side[i]];
-        end
-      end
+  for (genvar i = 0; i < REQUESTERS; i++) begin : g_asks
+    localparam logic IS_ANSWER = i < SIDES;
+    time_t since_when;
+    logic [CLASSES-1:0] room_there, full_there;
+    logic wants_link, late;
+    assign since_when = ready_since[i];
+    assign room_there = room[side[i]];
+    assign full_there = full[side[i]];
+    assign wants_link = asks[i] && !nothing[i] && !home[i];
+    assign late = ready[i] && since_when + TIME_BITS'(PATIENCE) < began && fault != FAULT_AGE;
+    assign overdue[i] = late;
+    assign key[i] = {!late, !late && !IS_ANSWER, fault == FAULT_ORDER ? TIME_BITS'(0) : since_when};
+    assign goal[i] = !asks[i] || nothing[i] ? 3'd0 : home[i] ? 3'(PORT) : {1'b0, side[i]};
+    assign asks_for[i] = {asks[i] && !nothing[i] && home[i],
+                          {3'b0, wants_link && room_there[wanted_class[i]]} << side[i]};
+    assign stalls_full[i] = wants_link && full_there[wanted_class[i]];
+    assign stalls_wires[i] = wants_link && wires_busy[side[i]];
+    for (genvar r = 0; r <= SIDES; r++) begin : g_of
+      assign resource_asks[r][i] = asks_for[i][r];
     end
   end
   for (genvar r = 0; r <= SIDES; r++) begin : g_arbiter
@@ -359,6 +365,7 @@ module empty_cell
   logic [SIDES:0][CLASS_BITS-1:0] won_class;
   logic [SIDES:0][15:0] won_cycles;
   logic [SIDES:0][RAY_BITS-1:0] won_message;
+  logic [SIDES:0][ID_BITS-1:0] won_id;
   for (genvar r = 0; r <= SIDES; r++) begin : g_winner
     winner #(
         .REQUESTERS(REQUESTERS)
@@ -367,46 +374,51 @@ module empty_cell
         .classes(wanted_class),
         .cycles(wanted_cycles),
         .messages(wanted_message),
+        .ids(wanted_id),
         .won_class(won_class[r]),
         .won_cycles(won_cycles[r]),
-        .won_message(won_message[r])
+        .won_message(won_message[r]),
+        .won_id(won_id[r])
     );
   end
   logic unused;
-  assign unused = &{1'b0, won_class[PORT], won_cycles[PORT]};  // home is no link
+  assign unused = &{1'b0, won_class[PORT], won_cycles[PORT], delivered_message, won_id[PORT], arrives_id[LOAD_LINK]};  // home is no link
   assign delivered = |resource_wins[PORT];
-  assign delivered_answer = won_message[PORT][RAY_BITS-1-:INTENSITY_BITS];
+  logic [RAY_BITS-1:0] delivered_message;
+  assign delivered_message = won_message[PORT];
+  assign delivered_answer  = delivered_message[RAY_BITS-1-:INTENSITY_BITS];
   for (genvar s = 0; s < SIDES; s++) begin : g_sent
     localparam logic LOADS = s == EAST;
     assign out_valid[s] = |resource_wins[s] || (LOADS && load_send);
     assign out_class[s] = won_class[s];  // 0 while loading
     assign out_cycles[s] = LOADS && loading ? load_cycles : won_cycles[s];
+    assign out_id[s] = won_id[s];
     assign out_message[s] = LOADS && loading ? load_message : {won_message[s], {(MESSAGE_BITS - RAY_BITS) {1'b0}}};
   end
 
+  for (genvar s = 0; s < SIDES; s++) begin : g_taken
+    localparam logic LOADS = s == WEST;
+    // Rays by class, then answers; while loading, class 0 alone.
+    assign take[s] = {goes[s], leaves[RAY_CLASSES*s+:RAY_CLASSES]} | CLASSES'(LOADS && load_take && !first_column);
+  end
+  assign take[LOAD_LINK] = CLASSES'(load_take && first_column);
+  assign leaves = goes[REQUESTERS-1:SIDES];
+  assign goes = (asks & nothing) | resource_wins[EAST] | resource_wins[SOUTH] | resource_wins[WEST] |
+      resource_wins[NORTH] | resource_wins[PORT];
   always_comb begin
-    goes = asks & nothing;
-    for (int r = 0; r <= SIDES; r++) goes |= resource_wins[r];
-    leaves = goes[REQUESTERS-1:SIDES];
-    take = '0;
-    for (int s = 0; s < SIDES; s++) begin
-      take[s][ANSWERS] = goes[s];
-      for (int c = 0; c < RAY_CLASSES; c++) take[s][c] = leaves[RAY_CLASSES*s+c];
-    end
-    if (load_take) begin
-      if (first_column) take[LOAD_LINK][0] = 1'b1;
-      else take[WEST][0] = 1'b1;
-    end
-    idle = &receiver_idle && load_idle && &place_empty && &answers_empty && pixel_idle && !latch && !making;
+    idle = links_idle && load_idle && &place_empty && answers_idle && pixel_idle && !latch && !making;
+    still = links_idle && load_idle && (pixel_idle || draining) && !latch && !making && untested == '0 &&
+        unit_busy == '0 && answers_wait && (asks & ~stalls_full) == '0;
   end
 
-  // What coverage counts; nothing else reads it.
+  // What coverage counts and the books of an array say; nothing else reads it.
   always_comb begin
     asks_since = ready_since;
     silent = |(asks & nothing);
+    ends_silently = asks[REQUESTERS-1:SIDES] & nothing[REQUESTERS-1:SIDES];
+    test_starts = unit_start;
+    test_place = unit_takes;
     postponed = delivered && !pixel_valid;
-    again = 1'b0;
-    for (int u = 0; u < TRAVERSAL_UNITS; u++) again |= unit_done[u] && unit_found[u].need == NEED_TEST;
-    for (int p = 0; p < PLACES; p++) ends[p] = leaves[p] && decision[p].need == NEED_ANSWER;
+    again = |unit_again;
   end
 endmodule

@@ -22,11 +22,12 @@ module load_unit
     output logic idle
 );
   // A message's length follows from what it holds. Where sources have kinds it would take a look at each, so
-  // that message goes on as long as it came.
+  // that message goes on as long as it came. All lengths are constants, so that nothing is divided.
   function automatic logic [15:0] link_cycles(input int bits);
     link_cycles = 16'((bits + LINK_BITS - 1) / LINK_BITS);
   endfunction
 
+  localparam int MOST_SOURCES = 128;  // the field has 7 bits
   localparam int BITS = MESSAGE_BITS + 16;
   localparam int COUNT = $clog2(BUFFER + 1);
   logic [COUNT-1:0] count;
@@ -45,7 +46,7 @@ module load_unit
       .push_arrival(now + 1'b1),
       .pop(take),
       .replace(1'b0),
-      .replacement('0),
+      .replacement({BITS{1'b0}}),
       .count,
       .head,
       .arrival,
@@ -57,19 +58,28 @@ module load_unit
   span_head_t span;
   setup_t viewer;
   logic [EDGES_BITS-1:0] edges;
-  logic [15:0] came;
+  logic [15:0] came, viewer_cycles, span_cycles;
   logic [TYPE_BITS-1:0] kind;
   logic ends, there;
   always_comb begin
     {came, message} = head;
-    viewer = setup_t'(message[MESSAGE_BITS-1-:SETUP_BITS]);
+    viewer = message[MESSAGE_BITS-1-:SETUP_BITS];
     edges = LOAD_EDGE_BITS > 0 ? message[MESSAGE_BITS-1-EDGES_AT-:EDGES_BITS] : '0;
-    span = span_head_t'(message[MESSAGE_BITS-1-:SPAN_HEAD_BITS]);
+    span = message[MESSAGE_BITS-1-:SPAN_HEAD_BITS];
     kind = span.message_type;
+    viewer_cycles = '0;
+    for (int i = 0; i < MOST_SOURCES; i++)
+      if (int'(viewer.sources) == i) viewer_cycles = link_cycles(LOAD_VIEWER_BITS + i * LOAD_POINT_BITS);
+    span_cycles = '0;
+    for (int i = 0; i < 1 << EDGES_BITS; i++)
+      if (int'(edges) == i) span_cycles = link_cycles(LOAD_SPAN_BITS + i * LOAD_EDGE_BITS);
+  end
+
+  always_comb begin
     unique case (kind)
-      LOAD_SETUP: send_cycles = link_cycles(LOAD_VIEWER_BITS + int'(viewer.sources) * LOAD_POINT_BITS);
+      LOAD_SETUP: send_cycles = viewer_cycles;
       LOAD_FEATURES: send_cycles = link_cycles(LOAD_FEATURES_BITS);
-      LOAD_SPAN: send_cycles = link_cycles(LOAD_SPAN_BITS + int'(edges) * LOAD_EDGE_BITS);
+      LOAD_SPAN: send_cycles = span_cycles;
       LOAD_END_OF_SCENE: send_cycles = link_cycles(LOAD_END_BITS);
       default: send_cycles = came;
     endcase

@@ -21,7 +21,7 @@ module message_buffer
     output logic [BITS-1:0] second  // behind the oldest
 );
   logic [DEPTH-1:0][BITS-1:0] messages;
-  time_t [DEPTH-1:0] arrivals;
+  logic [DEPTH-1:0][TIME_BITS-1:0] arrivals;
 
   assign head = messages[0];
   assign arrival = arrivals[0];

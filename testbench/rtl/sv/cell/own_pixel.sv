@@ -25,8 +25,7 @@ module own_pixel
   logic [63:0] wait_cycles, first_start;
 
   back_off draw (
-      .x,
-      .y,
+      .ray({32'(y) * 32'(COLUMNS) + 32'(x), 32'd0}),
       .attempt(attempts),
       .cycles(wait_cycles),
       .first_start
@@ -39,7 +38,7 @@ module own_pixel
     first = START_WITHIN == 0 ? now : now + TIME_BITS'(first_start);
     send = !hold_back && register_free &&
         (begins ? first == now : to_send && now >= not_before);
-    intensity = intensity_t'(answer);
+    intensity = answer;
     postponed = intensity.message_type == TYPE_POSTPONED;
     pixel_valid = delivered && !postponed;
     pixel = {intensity.red, intensity.green, intensity.blue};

@@ -28,23 +28,21 @@ module primary_ray
   logic [WORD-1:0] dx, dy, dz;
   floating_t inverse_x, inverse_y;
 
-  acc_t largest;
+  acc_t larger, largest;
   int drop;
   always_comb begin
-    largest = magnitude(vx) > magnitude(vy) ? magnitude(vx) : magnitude(vy);
-    if (magnitude(vz) > largest) largest = magnitude(vz);
+    larger = magnitude(vx) > magnitude(vy) ? magnitude(vx) : magnitude(vy);
+    largest = magnitude(vz) > larger ? magnitude(vz) : larger;
     drop = bit_length(largest) - MF;
   end
 
   // On the wires a mantissa of 2^MF is half of it, with an exponent of one more; of a 0 both are 0.
-  function automatic floating_t carried(input logic [WORD-1:0] word);
-    floating_t r;
-    r = reciprocal(acc_t'($signed(word)));
-    if (r.mantissa[MF]) begin
-      r.mantissa = r.mantissa >> 1;
-      r.exponent = r.exponent + 8'sd1;
-    end
-    carried = word == '0 ? '0 : r;
+  function automatic logic [WORD+7:0] carried(input logic [WORD-1:0] word);
+    logic [WORD-1:0] mantissa;
+    logic [7:0] exponent;
+    {mantissa, exponent} = reciprocal(acc_t'($signed(word)));
+    if (word == '0) carried = '0;
+    else carried = mantissa[MF] ? {mantissa >> 1, exponent + 8'd1} : {mantissa, exponent};
   endfunction
 
   ray_t ray;

@@ -12,59 +12,42 @@ package raycell_cell;
   localparam int PLACE_INDEX_BITS = $clog2(PLACES + 1);
 
   localparam int TIME_BITS = 48;
-  typedef logic [TIME_BITS-1:0] time_t;
+  typedef logic [47:0] time_t;
+
+  // A ray's number in the run: no part of a message, but back-offs are drawn from it, and benches follow it.
+  localparam int ID_BITS = 64;
+  typedef logic [63:0] id_t;
 
   localparam logic [1:0] PHASE_LOAD = 0, PHASE_PRECAST = 1, PHASE_TRACE = 2;
 
   // What every cell has latched from the viewer's message.
   typedef struct packed {
     logic [5:0] beyond;  // left, right, top, bottom, front, back: something of the scene is there
-    logic signed [DEPTH_BITS-1:0] depth;
-    logic [WORD-1:0] red;
-    logic [WORD-1:0] green;
-    logic [WORD-1:0] blue;
+    logic signed [raycell_pkg::DEPTH_BITS-1:0] depth;
+    logic [raycell_pkg::WORD-1:0] red;
+    logic [raycell_pkg::WORD-1:0] green;
+    logic [raycell_pkg::WORD-1:0] blue;
+    logic [6:0] sources;  // how many
   } known_t;
 
-  localparam logic [1:0] NEED_OUTPUT = 0, NEED_ANSWER = 1, NEED_NOTHING = 2, NEED_TEST = 3;
+  /* verilator lint_off UNUSEDPARAM */  // a cell without voxels has no hits
+  localparam logic [2:0] NEED_OUTPUT = 0, NEED_ANSWER = 1, NEED_NOTHING = 2, NEED_TEST = 3, NEED_SLOT = 4;
+  localparam int VOXEL_BITS = 16;  // of a voxel's number
+  localparam int DECISION_BITS = 3 * WORD + DEPTH_BITS + DISTANCE_BITS + VOXEL_BITS + 8;
+  /* verilator lint_on UNUSEDPARAM */
 
   // What a tested ray needs, and the ray as it goes on.
   typedef struct packed {
-    logic [1:0] need;  // NEED_TEST: another test in its place, outside the cube now
+    logic [2:0] need;  // NEED_TEST: another test in its place, outside the cube now; NEED_SLOT: a hit
     logic [1:0] side;
     logic lost;  // nothing is where it goes: its answer is the background
-    logic [WORD-1:0] x;
-    logic [WORD-1:0] y;
-    logic [DEPTH_BITS-1:0] z;
-    logic [WORD-1:0] reach;  // of a shadow ray; else the weight
+    logic blocked;  // a shadow ray has hit something
+    logic [raycell_pkg::WORD-1:0] x;
+    logic [raycell_pkg::WORD-1:0] y;
+    logic [raycell_pkg::DEPTH_BITS-1:0] z;
+    logic [raycell_pkg::WORD-1:0] reach;  // of a shadow ray; else the weight
     logic outside;
+    logic [raycell_pkg::DISTANCE_BITS-1:0] t;  // of a hit: its distance
+    logic [15:0] voxel;  // and its voxel
   } decision_t;
-
-  function automatic ray_t as_ray(input logic [RAY_BITS-1:0] message);
-    as_ray = ray_t'(message);
-  endfunction
-  // A shorter message stands in the upper bits.
-  function automatic shadow_ray_t as_shadow_ray(input logic [RAY_BITS-1:0] message);
-    as_shadow_ray = shadow_ray_t'(message[RAY_BITS-1-:SHADOW_RAY_BITS]);
-  endfunction
-  function automatic logic is_shadow(input logic [RAY_BITS-1:0] message);
-    is_shadow = message[RAY_BITS-1-:TYPE_BITS] == TYPE_SHADOW_RAY;
-  endfunction
-
-  // A ray with a decision's place, way left and mark.
-  function automatic logic [RAY_BITS-1:0] moved(input logic [RAY_BITS-1:0] message, input decision_t decision);
-    ray_t ray;
-    shadow_ray_t shadow;
-    ray = as_ray(message);
-    shadow = as_shadow_ray(message);
-    ray.x = decision.x;
-    ray.y = decision.y;
-    ray.z = decision.z;
-    ray.outside = decision.outside;
-    shadow.x = decision.x;
-    shadow.y = decision.y;
-    shadow.z = decision.z;
-    shadow.reach = decision.reach;
-    shadow.outside = decision.outside;
-    moved = is_shadow(message) ? {shadow, {(RAY_BITS - SHADOW_RAY_BITS) {1'b0}}} : ray;
-  endfunction
 endpackage

@@ -15,17 +15,31 @@ package raycell_numbers;
   localparam int FAULT_LEAVING = 8;
   localparam int FAULT_WIRES = 9;
   localparam int FAULT_BACK_OFF = 10;
+  // Of a cell with voxels, which has those above, too, that are not the walk's.
+  /* verilator lint_off UNUSEDPARAM */
+  localparam int FAULT_RESERVED = 11;  // no slots are kept for the generations
+  localparam int FAULT_WAITS = 12;  // a hit that finds no slot waits for one
+  localparam int FAULT_STACK = 13;  // slots that were never used go before those that became free
+  localparam int FAULT_EQUALS = 14;  // of equal ages the higher place goes first
+  localparam int FAULT_YOUNGEST = 15;  // the hit accepted last is shaded first
+  localparam int FAULT_CHILD = 16;  // a hit's children swap their numbers
+  localparam int FAULT_OFFSET = 17;  // a span's offset is advanced in the wrong direction
+  localparam int FAULT_LEFT = 18;  // a child hits the polygon that it leaves
+  localparam int FAULT_RETRY = 19;  // a postponed child is sent again at once
+  localparam int FAULT_LAST_VERDICT = 20;  // the verdict that completes a slot is lost
+  localparam int FAULT_DATAPATH = 20;  // those of the datapath come behind it: 21 to 30
+  /* verilator lint_on UNUSEDPARAM */
 `ifdef RTL_FAULTS
   int fault  /*verilator public_flat_rw*/ = 0;
 `else
   localparam int fault = 0;
 `endif
 
-  typedef logic signed [ACC-1:0] acc_t;  // as wide as the widest product
+  typedef logic signed [raycell_pkg::ACC-1:0] acc_t;  // as wide as the widest product
 
   // value * 2^(exponent - WORD + 1)
   typedef struct packed {
-    logic [WORD-1:0] mantissa;
+    logic [raycell_pkg::WORD-1:0] mantissa;
     logic signed [7:0] exponent;
   } floating_t;
 
@@ -41,7 +55,7 @@ package raycell_numbers;
       word = v >>> drop;
       rest = v - (word <<< drop);
       half = acc_t'(1) <<< (drop - 1);
-      if (ROUND_NEAREST && (rest > half || (rest == half && (word[0] || fault == FAULT_ROUNDING))))
+      if (ROUND_NEAREST && (rest > half || (rest == half && ((word & 1) != 0 || fault == FAULT_ROUNDING))))
         word = word + 1;
     end
     round_off = word;
@@ -92,7 +106,7 @@ package raycell_numbers;
     acc_t argument, line, r, correction;
     argument = m - (acc_t'(1) <<< MF);
     line = argument >>> RECIPROCAL_REST_BITS;
-    r = on_line(acc_t'(RECIPROCAL_WORDS[int'(line)]), acc_t'(RECIPROCAL_WORDS[int'(line)+1]),
+    r = on_line(acc_t'(RECIPROCAL_WORDS[int'(line)*WORD+:WORD]), acc_t'(RECIPROCAL_WORDS[(int'(line)+1)*WORD+:WORD]),
                 argument - (line <<< RECIPROCAL_REST_BITS), RECIPROCAL_REST_BITS);
     if (RECIPROCAL_NEWTON) begin
       correction = round_off((acc_t'(2) <<< (2 * MF)) - m * r, MF);
@@ -101,14 +115,13 @@ package raycell_numbers;
     reciprocal_mantissa = r;
   endfunction
 
-  // 1 / |x| of a word x != 0 of the format unit. Such a word never has to be rounded to a mantissa.
-  function automatic floating_t reciprocal(input acc_t x);
+  // 1 / |x| of a word x != 0 of the format unit, a floating_t. Such a word never has to be rounded to a mantissa.
+  function automatic logic [WORD+7:0] reciprocal(input acc_t x);
     acc_t size;
     int length;
     size = magnitude(x);
     length = bit_length(size);
-    reciprocal.mantissa = WORD'(reciprocal_mantissa(size <<< (WORD - length)));
-    reciprocal.exponent = 8'(UNIT_F + 1 - length);
+    reciprocal = {WORD'(reciprocal_mantissa(size <<< (WORD - length))), 8'(UNIT_F + 1 - length)};
   endfunction
 
   // m: 2^(MF - 1) to 2^(MF + 1) - 1, for 1 to 4.
@@ -117,12 +130,12 @@ package raycell_numbers;
     if (m[MF]) begin
       argument = m - (acc_t'(1) <<< MF);
       line = argument >>> ROOT_2_REST_BITS;
-      r = on_line(acc_t'(ROOT_2_WORDS[int'(line)]), acc_t'(ROOT_2_WORDS[int'(line)+1]),
+      r = on_line(acc_t'(ROOT_2_WORDS[int'(line)*WORD+:WORD]), acc_t'(ROOT_2_WORDS[(int'(line)+1)*WORD+:WORD]),
                   argument - (line <<< ROOT_2_REST_BITS), ROOT_2_REST_BITS);
     end else begin
       argument = m - (acc_t'(1) <<< (MF - 1));
       line = argument >>> ROOT_1_REST_BITS;
-      r = on_line(acc_t'(ROOT_1_WORDS[int'(line)]), acc_t'(ROOT_1_WORDS[int'(line)+1]),
+      r = on_line(acc_t'(ROOT_1_WORDS[int'(line)*WORD+:WORD]), acc_t'(ROOT_1_WORDS[(int'(line)+1)*WORD+:WORD]),
                   argument - (line <<< ROOT_1_REST_BITS), ROOT_1_REST_BITS);
     end
     if (ROOT_NEWTON) begin
@@ -133,8 +146,8 @@ package raycell_numbers;
     root_mantissa = r;
   endfunction
 
-  // 1 / sqrt(x) of a word x > 0 of the format field.
-  function automatic floating_t inverse_root(input acc_t x);
+  // 1 / sqrt(x) of a word x > 0 of the format field, a floating_t.
+  function automatic logic [WORD+7:0] inverse_root(input acc_t x);
     int exponent, odd, half;
     acc_t m;
     exponent = bit_length(x) - 1 - FIELD_F;
@@ -145,7 +158,7 @@ package raycell_numbers;
       m = m >>> 2;
       half = half + 1;
     end
-    inverse_root.mantissa = WORD'(root_mantissa(m));
-    inverse_root.exponent = 8'(-half);
+    half = -half;
+    inverse_root = {WORD'(root_mantissa(m)), 8'(half)};
   endfunction
 endpackage

@@ -31,6 +31,7 @@ module viewer_latch
       known.red <= viewer.red;
       known.green <= viewer.green;
       known.blue <= viewer.blue;
+      known.sources <= viewer.sources;
     end
   end
 endmodule

@@ -21,9 +21,9 @@ module walk
   logic shadow, outside;
   acc_t px, py, pz, dx, dy, dz, reach;
   always_comb begin
-    ray = as_ray(message);
-    shadow_ray = as_shadow_ray(message);
-    shadow = is_shadow(message);
+    ray = message;
+    shadow_ray = message[RAY_BITS-1-:SHADOW_RAY_BITS];  // a shorter message stands in the upper bits
+    shadow = ray.message_type == TYPE_SHADOW_RAY;
     outside = shadow ? shadow_ray.outside : ray.outside;
     px = acc_t'($signed(ray.x));
     py = acc_t'($signed(ray.y));
@@ -56,22 +56,21 @@ module walk
   end
 
   // Front and back.
-  acc_t bound, z_side, t_face, t_leave;
+  acc_t bound, z_side, way_to_face, t_face, t_leave;
   logic leaves;
   floating_t inverse_dz;
   always_comb begin
     bound = dz > 0 ? acc_t'(known.depth) : '0;
     z_side = hold((pz <<< (DISTANCE_F + UNIT_F - DEPTH_F)) + t_side * dz, DISTANCE_F + UNIT_F - DEPTH_F,
                   DEPTH_BITS);
-    leaves = !outside && (axial || (dz > 0 ? z_side > bound : z_side < bound));
-    if (fault == FAULT_LEAVING && dz > 0 && z_side == bound) leaves = !outside;
+    leaves = !outside && (axial || (dz > 0 ? z_side > bound || (z_side == bound && fault == FAULT_LEAVING) : z_side < bound));
     inverse_dz = reciprocal(dz);
     if (dz == 0)  // 1/0 is so large that its product saturates
-      t_face = bound > pz ? (acc_t'(1) <<< (DISTANCE_BITS - 1)) - 1 : '0;
+      way_to_face = bound > pz ? (acc_t'(1) <<< (DISTANCE_BITS - 1)) - 1 : '0;
     else
-      t_face = hold((dz > 0 ? bound - pz : pz - bound) * acc_t'(inverse_dz.mantissa),
+      way_to_face = hold((dz > 0 ? bound - pz : pz - bound) * acc_t'(inverse_dz.mantissa),
                     DEPTH_F + WORD - 1 - int'(inverse_dz.exponent) - DISTANCE_F, DISTANCE_BITS);
-    if (t_face < 0) t_face = '0;  // it may start slightly outside the cube
+    t_face = way_to_face < 0 ? '0 : way_to_face;  // it may start slightly outside the cube
     t_leave = axial || t_face < t_side ? t_face : t_side;
   end
 
@@ -81,6 +80,8 @@ module walk
 
   // The next cell, and the face of the cube that counts if there is none.
   logic over_border, front_or_back, nothing_there;
+  logic [5:0] beyond;
+  assign beyond = known.beyond;
   logic [2:0] face;
   always_comb begin
     unique case (int'(side))
@@ -98,48 +99,40 @@ module walk
         WEST: face = 3'd5;
         default: face = 3'd3;
       endcase
-    nothing_there = !(EXTERIOR && known.beyond[face]);
+    nothing_there = !(EXTERIOR && beyond[face]);
   end
 
   acc_t t, mx, my, mz, rest;
-  logic crosses;
+  logic crosses, moves, lost;
+  logic [2:0] need;
   always_comb begin
     divides = leaves;
     t = leaves ? t_leave : t_side;
     crosses = !leaves && !arrives && !over_border && !axial;
-    mx = clamp_to_cell(hold((px <<< DISTANCE_F) + t * dx, DISTANCE_F, WORD));
-    my = clamp_to_cell(hold((py <<< DISTANCE_F) + t * dy, DISTANCE_F, WORD));
+    if (crosses && !over_y) mx = side == 2'(EAST) ? '0 : ONE;
+    else mx = clamp_to_cell(hold((px <<< DISTANCE_F) + t * dx, DISTANCE_F, WORD));
+    if (crosses && over_y) my = side == 2'(SOUTH) ? '0 : ONE;
+    else my = clamp_to_cell(hold((py <<< DISTANCE_F) + t * dy, DISTANCE_F, WORD));
     mz = hold((pz <<< (DISTANCE_F + UNIT_F - DEPTH_F)) + t * dz, DISTANCE_F + UNIT_F - DEPTH_F, DEPTH_BITS);
     rest = hold((reach <<< FINER) - t, FINER, WORD);
-    if (crosses && !over_y) mx = side == 2'(EAST) ? '0 : ONE;
-    if (crosses && over_y) my = side == 2'(SOUTH) ? '0 : ONE;
 
+    lost = !arrives && (leaves || over_border) && nothing_there;
+    if (arrives || lost) need = shadow && precast ? NEED_NOTHING : NEED_ANSWER;  // silence is lit
+    else need = leaves ? NEED_TEST : NEED_OUTPUT;
+    moves = crosses || need == NEED_TEST;  // else it goes on as it stands
+  end
+
+  always_comb begin
+    decision.need = need;
     decision.side = side;
-    decision.lost = 1'b0;
-    decision.outside = outside;
-    if (arrives) begin
-      decision.need = NEED_ANSWER;
-    end else if (leaves ? nothing_there : over_border && nothing_there) begin
-      decision.need = NEED_ANSWER;
-      decision.lost = 1'b1;
-    end else if (leaves) begin
-      decision.need = NEED_TEST;
-      decision.outside = 1'b1;
-    end else begin
-      decision.need = NEED_OUTPUT;
-    end
-    if (decision.need == NEED_ANSWER && shadow && precast) decision.need = NEED_NOTHING;  // silence is lit
-
-    if (crosses || decision.need == NEED_TEST) begin
-      decision.x = WORD'(mx);
-      decision.y = WORD'(my);
-      decision.z = DEPTH_BITS'(mz);
-      decision.reach = finite ? WORD'(rest) : shadow_ray.reach;
-    end else begin  // as it stands
-      decision.x = ray.x;
-      decision.y = ray.y;
-      decision.z = ray.z;
-      decision.reach = shadow_ray.reach;
-    end
+    decision.lost = lost;
+    decision.blocked = 1'b0;
+    decision.t = '0;
+    decision.voxel = '0;
+    decision.x = moves ? WORD'(mx) : ray.x;
+    decision.y = moves ? WORD'(my) : ray.y;
+    decision.z = moves ? DEPTH_BITS'(mz) : ray.z;
+    decision.reach = moves && finite ? WORD'(rest) : shadow_ray.reach;
+    decision.outside = outside || need == NEED_TEST;
   end
 endmodule
