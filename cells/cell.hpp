@@ -63,6 +63,13 @@ class alignas(64) Cell final : public Client {
     int x() const { return x_; }
     int y() const { return y_; }
     std::uint64_t schedule_hash() const { return meter_.hash(); }
+    // For a module in the cell's place that keeps its books here (CellSocket::replaces()).
+    CellMeter& meter() { return meter_; }
+    Injector& injector() { return injector_; }
+    TimeOut& time_out() { return time_out_; }
+    RayStore& ray_store() { return ray_store_; }
+    ShadingUnit& shading() { return shading_; }
+    LoadingUnits& loading_units() { return loading_; }
     /// The state that loading leaves in a cell beside its voxels.
     struct Loading {
         std::uint64_t hash = 0;  ///< of its schedule

@@ -130,6 +130,16 @@ void count_kept(Environment& environment, const CellStore& store, int kept, int 
 
 }  // namespace
 
+void keep_span(LoadingUnits& unit, std::uint32_t lines, const CellStore& store, Environment& environment,
+               CellMeter& meter) {
+    const Cycle now = environment.scheduler.now();
+    const Cycle making = environment.costs().load_voxel(environment.context.settings.hit);
+    unit.keep(making, lines * environment.costs().load_order, now);
+    meter.kept(making);
+    count_kept(environment, store, unit.kept(making, now), unit.count());
+    environment.scheduler.sample_at(unit.made(), unit.made());
+}
+
 std::optional<LoadItem::Kind> pass_load(LoadingUnits& unit, LinkIn& from, LinkOut* east, CellStore& store,
                                         Environment& environment, CellMeter& meter, int x, Wakeup& wakeup) {
     const Cycle now = environment.scheduler.now();
@@ -148,10 +158,7 @@ std::optional<LoadItem::Kind> pass_load(LoadingUnits& unit, LinkIn& from, LinkOu
     from.pop(0);
     unit.finish();
     if (makes) {
-        unit.keep(making, lines * environment.costs().load_order, now);
-        meter.kept(making);
-        count_kept(environment, store, unit.kept(making, now), unit.count());
-        environment.scheduler.sample_at(unit.made(), unit.made());
+        keep_span(unit, lines, store, environment, meter);
     } else if (kind == LoadItem::Kind::end_of_scene) {
         unit.close();
         if (unit.closes(now, wakeup)) meter.loaded(environment.meters.counters, now);

@@ -60,6 +60,10 @@ Ray begin_primary(unsigned number, Injector& injector, Environment& environment,
 /// Handles the answer to a primary ray of cell (x, y), which may be a postponed notice.
 void end_primary(const Answer& answer, Injector& injector, Environment& environment, int x, int y);
 
+/// A span is kept from which a voxel is made; `lines` of the index table are passed for it.
+void keep_span(LoadingUnits& unit, std::uint32_t lines, const CellStore& store, Environment& environment,
+               CellMeter& meter);
+
 /// One cycle of loading in column x: works on the oldest message of `from`, stores its voxel in `store` if it
 /// makes one, and passes it on over `east` (null at the array's border). Returns the kind of the message if
 /// its work ended in this cycle.

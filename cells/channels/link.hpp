@@ -137,6 +137,11 @@ class alignas(64) Link final : public LinkOut, public LinkIn {
         const Buffer* buffer = find(index);
         return buffer ? buffer->count : 0;
     }
+    /// Messages in a buffer as its sender sees them in this cycle: those taken in it still count.
+    int seen(int index) const {
+        const Buffer* b = find(index);
+        return b ? int(b->count + b->still_seen(scheduler_.now())) : 0;
+    }
     /// Whether the buffer of a class has no room left; for observers, not for sending.
     bool full(int index) const { return occupancy(index) >= depth_; }
     /// A message in a buffer, for observers. `place` counts from the oldest, 0, and is below occupancy().

@@ -58,6 +58,7 @@ void Array::make_hosts(const Granularity& granularity) {
         if (granularity.own_cells) {
             const std::string name = name_at("own_cell", cell.x(), cell.y());
             if (auto own = granularity.own_cells(name.c_str(), environment_, cell.x(), cell.y())) {
+                own->replaces(cell);
                 sockets_[i] = std::move(own);
                 continue;
             }

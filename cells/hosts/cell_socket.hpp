@@ -8,6 +8,7 @@
 
 namespace raycell {
 
+class Cell;
 struct Environment;
 
 /// The base of a user's module that replaces one of the array's cells. The array binds its ports. Its process
@@ -18,6 +19,9 @@ class CellSocket : public CellPorts, public Client {
   public:
     using CellPorts::CellPorts;
 
+    /// Called once, before the links are bound: the array's own cell of this place, which is never run
+    /// by the array. Reports read its meter and its voxels, so a module may keep its books there.
+    virtual void replaces(Cell& /*cell*/) {}
     /// The environment's phase begins in the next cycle; the module is woken in it.
     virtual void begin_phase() {}
     /// The primary ray of a pixel of its block is to be sent once more; phase trace is over.

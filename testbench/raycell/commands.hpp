@@ -24,6 +24,9 @@ struct Command {
 };
 
 Command add_render_command(CLI::App& program);
+/// For another program, with what it adds (render_hooks.hpp).
+struct RenderHooks;
+Command add_render_command(CLI::App& program, RenderHooks hooks);
 Command add_truth_command(CLI::App& program);
 Command add_compare_command(CLI::App& program);
 Command add_size_command(CLI::App& program);

@@ -36,6 +36,7 @@
 #include "testbench/raycell/frames_run.hpp"
 #include "testbench/raycell/golden_run.hpp"
 #include "testbench/raycell/rank_run.hpp"
+#include "testbench/raycell/render_hooks.hpp"
 
 namespace raycell {
 namespace {
@@ -82,7 +83,8 @@ void foretell(const RenderOptions& options, const CellScene& scene, const TruthR
 }
 
 Run run_timed(const RenderOptions& options, const std::string& configuration, const CellScene& scene,
-              const TruthRenderer* truth, const ExteriorTracer* tracer, RankRun* ranks, OutputSet& outputs) {
+              const TruthRenderer* truth, const ExteriorTracer* tracer, RankRun* ranks,
+              const CellFactory& own_cells, OutputSet& outputs) {
     Run run;
     ArrayFiles arrays(options, scene);
     if (!ranks || ranks->first()) foretell(options, scene, truth, run);
@@ -90,9 +92,11 @@ Run run_timed(const RenderOptions& options, const std::string& configuration, co
     const std::uint64_t before = memory_bytes();
     // Never destroyed: SystemC takes ports down in quadratic time (minutes for 256x256 cells), and a process
     // has only one elaboration anyway.
+    Granularity granularity = granularity_of(options);
+    granularity.own_cells = own_cells;
     static Machine* const kept =
-        new Machine("machine", scene, options.picture, options.machine, tracer, nullptr,
-                    granularity_of(options), ranks ? &ranks->exchange(scene, options) : nullptr);
+        new Machine("machine", scene, options.picture, options.machine, tracer, nullptr, granularity,
+                    ranks ? &ranks->exchange(scene, options) : nullptr);
     Machine& machine = *kept;
     const std::uint64_t cells = std::uint64_t(options.picture.width) * std::uint64_t(options.picture.height);
     const std::uint64_t after = memory_bytes();
@@ -345,7 +349,7 @@ void summarise(const RenderOptions& options, const Json& json, bool whole) {
     tell_page(options.prefix);
 }
 
-int run(const RenderOptions& options, const OptionTable& table, int jobs) {
+int run(const RenderOptions& options, const OptionTable& table, int jobs, const RenderHooks& hooks) {
     check_granularity(options);
     check_wires(options);
     watch_of(options, std::cout);  // throws early for what can't be watched
@@ -353,6 +357,7 @@ int run(const RenderOptions& options, const OptionTable& table, int jobs) {
     check_recording(options);
     check_golden(options);
     check_samples(options.picture);
+    if (hooks.check) hooks.check(options);
     if (!options.frames.empty() && options.frame == 0)
         return run_frames(options, table, suffixes_of(options), jobs);
     check_ranks(options);
@@ -372,6 +377,7 @@ int run(const RenderOptions& options, const OptionTable& table, int jobs) {
     };
     const std::unique_ptr<RankRun> ranks = launched_ranks().count > 1 ? std::make_unique<RankRun>() : nullptr;
     const CellScene scene = ranks ? ranks->share_scene(read) : read();
+    if (hooks.placed && !hooks.placed(options, scene)) return exit_done;
     const bool traces = options.picture.stage == RunStage::trace && (!ranks || ranks->first());
     const bool exterior = options.picture.exterior == ExteriorMode::host && traces;
     std::unique_ptr<TruthRenderer> whole;
@@ -384,9 +390,10 @@ int run(const RenderOptions& options, const OptionTable& table, int jobs) {
     if (exterior) tracer = std::make_unique<ClassicalExterior>(scene, *whole);
     const double wall_placing = seconds_since(start);
     const Json config = table.values();
-    Run done = options.engine == Engine::timed ? run_timed(options, to_toml(config), scene, whole.get(),
-                                                           tracer.get(), ranks.get(), outputs)
-                                               : run_untimed(options, scene, tracer.get());
+    Run done = options.engine == Engine::timed
+                   ? run_timed(options, to_toml(config), scene, whole.get(), tracer.get(), ranks.get(),
+                               hooks.own_cells, outputs)
+                   : run_untimed(options, scene, tracer.get());
     done.wall_build += wall_placing;
     if (ranks && !ranks->first()) {
         ranks->finish();
@@ -401,12 +408,15 @@ int run(const RenderOptions& options, const OptionTable& table, int jobs) {
     explain(result, bound_of(Context(scene, options.picture), options.machine));
     if (!options.quiet) summarise(options, json, uncut);
     if (ranks) ranks->finish();
-    return uncut ? exit_code(result.verdict) : int(exit_interrupted);
+    const int code = uncut ? exit_code(result.verdict) : int(exit_interrupted);
+    return hooks.ended ? hooks.ended(code) : code;
 }
 
 }  // namespace
 
-Command add_render_command(CLI::App& program) {
+Command add_render_command(CLI::App& program) { return add_render_command(program, RenderHooks()); }
+
+Command add_render_command(CLI::App& program, RenderHooks hooks) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* app = program.add_subcommand("render", "Renders a scene with the simulated machine");
     auto table = std::make_shared<OptionTable>(*app);
@@ -420,7 +430,9 @@ Command add_render_command(CLI::App& program) {
     app->add_option("-j,--jobs", *jobs, "frames of --frames at a time")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    return {app, [options, table, jobs] { return run(*options, *table, *jobs); }};
+    if (hooks.add_options) hooks.add_options(*app);
+    return {app,
+            [options, table, jobs, hooks = std::move(hooks)] { return run(*options, *table, *jobs, hooks); }};
 }
 
 }  // namespace raycell
