@@ -62,10 +62,6 @@ class ArrayCell {
 
     /// Out of reset. `viewer`: the digits of the viewer's message, for a cell that is not to load itself.
     virtual void reset(const std::string& viewer) = 0;
-    /// Writes a word of the voxel store. False: there is no such port.
-    virtual bool write_store(int /*part*/, std::uint32_t /*address*/, const std::string& /*digits*/) {
-        return false;
-    }
 
     virtual void begin(std::uint64_t now) = 0;
     virtual void phase(int code, bool begins) = 0;
